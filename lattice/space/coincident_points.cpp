@@ -108,6 +108,10 @@ Mesh merged(const Mesh& mesh, double near) {
   }
   for (const auto p : mesh.vertices)  // a number that is of no point is of none still
     one.vertices.push_back(p >= 0 && at(p) < number.size() ? number[p] : p);
+  one.parts = mesh.parts;
+  for (Mesh::Part& part : one.parts)
+    for (auto& side : part.sides)
+      for (auto& p : side) p = number[p];
   return one;
 }
 

@@ -4,22 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "lattice/index.hpp"
+#include "lattice/space/point_vectors.hpp"
 
 namespace delf {
 namespace {
 
 using Point = Mesh::Point;
-
-Point between(const Point& a, const Point& b) { return {b[0] - a[0], b[1] - a[1], b[2] - a[2]}; }
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double norm(const Point& a) { return std::sqrt(dot(a, a)); }
 
 /// A side a → b of a cell.
 struct Side {
@@ -211,23 +207,44 @@ double shortest_edge(const Mesh& mesh) {
   return shortest;
 }
 
-std::vector<std::int32_t> boundary_points(const Mesh& mesh) {
-  std::vector<char> outer(mesh.points.size(), 0);
+std::vector<std::array<std::int32_t, 2>> boundary_sides(const Mesh& mesh) {
+  std::vector<std::array<std::int32_t, 2>> outer;
   if (mesh.dimension == 1) {
-    for (const auto p : mesh.vertices) ++outer[p];
-    for (char& n : outer) n = n == 1;
-  } else {
-    const std::vector<Side> sides = sorted_sides(mesh);
-    for (std::size_t n = 0; n < sides.size(); ++n) {
-      const auto same = [&](std::size_t m) {
-        return m < sides.size() && sides[m].low == sides[n].low && sides[m].high == sides[n].high;
-      };
-      if (!same(n + 1) && !(n > 0 && same(n - 1))) outer[sides[n].low] = outer[sides[n].high] = 1;
-    }
+    std::vector<char> segments(mesh.points.size(), 0);
+    for (const auto p : mesh.vertices) ++segments[p];
+    for (std::size_t p = 0; p < segments.size(); ++p)
+      if (const auto end = static_cast<std::int32_t>(p); segments[p] == 1) outer.push_back({end, end});
+    return outer;
   }
+  const std::vector<Side> sides = sorted_sides(mesh);
+  for (std::size_t n = 0; n < sides.size(); ++n) {
+    const auto same = [&](std::size_t m) {
+      return m < sides.size() && sides[m].low == sides[n].low && sides[m].high == sides[n].high;
+    };
+    if (!same(n + 1) && !(n > 0 && same(n - 1))) outer.push_back({sides[n].low, sides[n].high});
+  }
+  return outer;
+}
+
+std::vector<std::int32_t> boundary_points(const Mesh& mesh) {
   std::vector<std::int32_t> points;
-  for (std::size_t p = 0; p < outer.size(); ++p)
-    if (outer[p]) points.push_back(static_cast<std::int32_t>(p));
+  for (const auto& [a, b] : boundary_sides(mesh)) points.push_back(a), points.push_back(b);
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+std::vector<char> held_points(const Mesh& mesh, bool otherwise, std::span<const PartCondition> conditions) {
+  std::map<std::array<std::int32_t, 2>, bool> held;
+  for (const auto& side : boundary_sides(mesh)) held[side] = otherwise;
+  for (const auto& [name, is_held] : conditions) {
+    const auto part = std::ranges::find(mesh.parts, name, &Mesh::Part::name);
+    if (part == mesh.parts.end()) throw std::out_of_range(name);
+    for (const auto& [a, b] : part->sides) held[{std::min(a, b), std::max(a, b)}] = is_held;
+  }
+  std::vector<char> points(mesh.points.size(), 0);
+  for (const auto& [side, is_held] : held)
+    if (is_held) points[side[0]] = points[side[1]] = 1;
   return points;
 }
 

@@ -20,6 +20,12 @@ struct Mesh {
   int dimension = 2;  ///< of the cells: 1, or 2
   std::vector<Point> points;
   std::vector<std::int32_t> first{0}, vertices;
+  /// A part of the boundary that has a name: its sides (a, b), or the points (p, p) of a mesh of segments.
+  struct Part {
+    std::string name;
+    std::vector<std::array<std::int32_t, 2>> sides;
+  };
+  std::vector<Part> parts = {};
   std::vector<int> point_lines = {}, cell_lines = {};  ///< of the file that they were read from; empty if generated
 
   /// The numbers that the file gives them, as Gmsh does; empty: those from 0.
@@ -50,8 +56,19 @@ double measure(const Mesh&, int cell);
 double shortest_edge(const Mesh&);
 /// The shortest edge of one cell.
 double shortest_edge(const Mesh&, int cell);
+/// Sides (a, b), a < b, that only one cell has, each once; of a mesh of segments its ends, (p, p).
+std::vector<std::array<std::int32_t, 2>> boundary_sides(const Mesh&);
 /// Points on the boundary, each once, in order: ends of curves, and points of sides that only one cell has.
 std::vector<std::int32_t> boundary_points(const Mesh&);
+
+/// A condition at the sides of a part: their points are held, or free.
+struct PartCondition {
+  std::string part;
+  bool held;
+};
+/// [point]: true for those of a side that is held. Sides of the boundary that no condition names are held if `otherwise`. A
+/// point between a side that is held and one that is free is held. Throws std::out_of_range for a part that there is none of.
+std::vector<char> held_points(const Mesh&, bool otherwise, std::span<const PartCondition> = {});
 
 /// The fault of a mesh, and the line of its file that has it (0: none).
 struct MeshFault {
@@ -62,10 +79,10 @@ struct MeshFault {
 /// point that hangs in the middle of a side or that no cell has.
 std::optional<MeshFault> find_fault(const Mesh&);
 
-/// N points on 0 … length, each cell `ratio` times as long as the one before.
+/// N points on 0 … length, each cell `ratio` times as long as the one before; its ends are left and right.
 Mesh graded_interval(double length, int points, double ratio);
 /// [0, width] × [0, height] in nx × ny rectangles, each cut in two triangles along alternating diagonals unless
-/// `quadrilaterals`.
+/// `quadrilaterals`; its sides are left, right, bottom and top.
 Mesh rectangle_mesh(double width, double height, int nx, int ny, bool quadrilaterals);
 /// The unit sphere: an icosahedron, each triangle cut in four `level` times: 10·4^level + 2 points.
 Mesh icosahedral_sphere(int level);

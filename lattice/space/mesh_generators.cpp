@@ -16,6 +16,7 @@ Mesh graded_interval(double length, int points, double ratio) {
     mesh.add_cell(std::array{n - 1, n});
   }
   for (Mesh::Point& p : mesh.points) p[0] *= length / end;
+  mesh.parts = {{"left", {{0, 0}}}, {"right", {{points - 1, points - 1}}}};
   return mesh;
 }
 
@@ -23,6 +24,13 @@ Mesh rectangle_mesh(double width, double height, int nx, int ny, bool quadrilate
   Mesh mesh;
   for (int j = 0; j <= ny; ++j)
     for (int i = 0; i <= nx; ++i) mesh.points.push_back({width * i / nx, height * j / ny, 0});
+  mesh.parts = {{"left", {}}, {"right", {}}, {"bottom", {}}, {"top", {}}};
+  for (std::int32_t j = 0; j < ny; ++j)
+    for (const std::int32_t i : {0, nx})
+      mesh.parts[i ? 1 : 0].sides.push_back({j * (nx + 1) + i, (j + 1) * (nx + 1) + i});
+  for (const std::int32_t j : {0, ny})
+    for (std::int32_t i = 0; i < nx; ++i)
+      mesh.parts[j ? 3 : 2].sides.push_back({j * (nx + 1) + i, j * (nx + 1) + i + 1});
   for (std::int32_t j = 0; j < ny; ++j)
     for (std::int32_t i = 0; i < nx; ++i) {
       const std::int32_t a = j * (nx + 1) + i, b = a + 1, d = a + nx + 1, c = d + 1;

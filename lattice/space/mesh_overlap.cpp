@@ -10,6 +10,8 @@
 #include <limits>
 #include <span>
 
+#include "lattice/space/point_vectors.hpp"
+
 namespace delf {
 namespace {
 
@@ -18,11 +20,6 @@ using Point = Mesh::Point;
 using Corner = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
 using Box = boost::geometry::model::box<Corner>;
 
-Point between(const Point& a, const Point& b) { return {b[0] - a[0], b[1] - a[1], b[2] - a[2]}; }
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Point unit(const Point& a) {
   const double length = std::sqrt(dot(a, a));
   return {a[0] / length, a[1] / length, a[2] / length};

@@ -37,6 +37,15 @@ Mesh refined(const Mesh& mesh) {
       for (std::size_t l = 0; l < 4; ++l) fine.add_cell(std::array{corners[l], side[l], centre, side[(l + 3) % 4]});
     }
   }
+  for (const Mesh::Part& part : mesh.parts) {
+    Mesh::Part halves{part.name, {}};
+    for (const auto& [a, b] : part.sides) {
+      const std::int32_t middle = a == b ? a : middle_of(a, b);
+      halves.sides.push_back({a, middle});
+      if (a != b) halves.sides.push_back({middle, b});
+    }
+    fine.parts.push_back(std::move(halves));
+  }
   return fine;
 }
 

@@ -18,9 +18,7 @@ CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, b
       constraint(std::move(constraint_)),
       tables(density),
       masses(lumped_masses(mesh)) {
-  fixed.assign(mesh.points.size(), 0);
-  if (fixed_boundary)
-    for (const auto p : boundary_points(mesh)) fixed[p] = 1;
+  fixed = held_points(mesh, fixed_boundary);
 }
 
 void CellSpace::each_constraint(std::span<const double> values, const UseConstraint& use) const {

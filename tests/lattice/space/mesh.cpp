@@ -19,6 +19,45 @@ double total(const Mesh& mesh) {
   return sum;
 }
 
+/// The points that are held where these sides of a rectangle are, by their numbers.
+std::vector<int> held(const Mesh& mesh, bool otherwise, std::vector<PartCondition> conditions) {
+  const std::vector<char> all = held_points(mesh, otherwise, conditions);
+  std::vector<int> list;
+  for (std::size_t p = 0; p < all.size(); ++p)
+    if (all[p]) list.push_back(static_cast<int>(p));
+  return list;
+}
+
+TEST_CASE("sides of a boundary are held or free, and a point between both is held") {
+  const Mesh mesh = rectangle_mesh(2, 1, 2, 1, false);  // points 0 1 2 below 3 4 5
+  CHECK(held(mesh, false, {}).empty());
+  CHECK(held(mesh, true, {}).size() == 6);
+  CHECK(held(mesh, false, {{"left", true}}) == std::vector{0, 3});
+  CHECK(held(mesh, true, {{"bottom", false}}) == std::vector{0, 2, 3, 4, 5});
+  CHECK(held(mesh, true, {{"bottom", false}, {"left", false}, {"right", false}}) == std::vector{3, 4, 5});
+  CHECK_THROWS_AS(held(mesh, true, {{"inflow", false}}), std::out_of_range);
+  const Mesh line = graded_interval(10, 11, 1.2);
+  CHECK(held(line, false, {{"right", true}}) == std::vector{10});
+}
+
+TEST_CASE("parts of a boundary stay parts of it where a mesh is refined") {
+  Mesh fine = refined(refined(rectangle_mesh(2, 1, 2, 1, true)));
+  for (const Mesh::Part& part : fine.parts) {
+    CHECK(part.sides.size() == (part.name == "left" || part.name == "right" ? 4 : 8));
+    const auto& held = held_points(fine, false, std::vector{PartCondition{part.name, true}});
+    for (std::size_t p = 0; p < held.size(); ++p) {
+      const auto [x, y, z] = fine.points[p];
+      const bool on = part.name == "left"     ? x == 0
+                      : part.name == "right"  ? x == 2
+                      : part.name == "bottom" ? y == 0
+                                              : y == 1;
+      CHECK(static_cast<bool>(held[p]) == on);
+    }
+  }
+  fine.parts[0].sides.push_back({0, 1});  // the check can fail
+  CHECK(held(fine, false, {{"left", true}}).size() == 6);
+}
+
 TEST_CASE("generated meshes are sound, and fill their space") {
   for (const bool quadrilaterals : {false, true}) {
     const Mesh plane = rectangle_mesh(3, 2, 6, 5, quadrilaterals);

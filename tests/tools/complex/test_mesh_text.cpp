@@ -21,6 +21,11 @@ std::string fault_of(const std::string& text, std::optional<double> merge = {}) 
   return "none";
 }
 
+std::string changed(std::string text, const std::string& before, const std::string& after) {
+  REQUIRE(contains(text, before));
+  return text.replace(text.find(before), before.size(), after);
+}
+
 const std::string square = "point 0 0\npoint 1 0\npoint 1 1\npoint 0 1\n";
 const std::string msh2 =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"all\"\n$EndPhysicalNames\n"
@@ -45,14 +50,9 @@ TEST_CASE("meshes are read from text and from Gmsh's two formats") {
 }
 
 TEST_CASE("a fault of a mesh of Gmsh is named by the numbers of the file, and a cell that is there twice as such") {
-  const auto changed = [](std::string text, const std::string& before, const std::string& after) {
-    REQUIRE(contains(text, before));
-    return text.replace(text.find(before), before.size(), after);
-  };
   CHECK_THAT(fault_of(changed(msh2, "3 2 2 1 1 1 5 9", "41 2 2 1 1 1 9 5")),
              Catch::StartsWith("19: cell 41 is listed"));
   CHECK_THAT(fault_of(changed(msh4, "3 1 5 9", "41 1 9 5")), Catch::StartsWith("23: cell 41 is listed"));
-  CHECK_THAT(fault_of(changed(msh2, "1 5 9", "1 2 5")), Catch::StartsWith("13: point 9 is in no cell"));
   const std::string squares = square + "point 2 0\npoint 2 1\ncell 0 1 2 3\ncell 1 4 5 2\n";
   CHECK(fault_of(squares + "cell 2 3 0 1\n") ==
         "9: cell 2 has the same points as cell 0: it is there twice; remove one of them");
@@ -62,11 +62,47 @@ TEST_CASE("a fault of a mesh of Gmsh is named by the numbers of the file, and a 
         "6: cell 2 has the same points as cell 0: it is there twice; remove one of them");
 }
 
+TEST_CASE("a point of Gmsh's geometry that no cell has is left out, and the numbers of the others stay") {
+  const Mesh mesh = parse_mesh(changed(msh2, "4\n1 0 0 0\n", "5\n7 0.5 0.5 0\n1 0 0 0\n"));
+  CHECK(mesh.points.size() == 4);
+  CHECK(mesh.point_number(0) == 1);
+  CHECK(mesh.point_number(3) == 9);
+  CHECK(measure(mesh, 0) + measure(mesh, 1) == Approx(1));
+}
+
+TEST_CASE("elements that are no cells are named, with a remedy") {
+  CHECK_THAT(
+      fault_of(changed(msh2, "3 2 2 1 1 1 5 9", "3 4 2 1 1 1 2 5 9")),
+      Catch::StartsWith("19: a tetrahedron (type 4); ") && Catch::Contains("save the mesh of a curve or a surface"));
+  CHECK_THAT(fault_of(changed(msh2, "3 2 2 1 1 1 5 9", "3 9 2 1 1 1 5 9 1 2 5")),
+             Catch::StartsWith("19: a triangle of order 2 (type 9); ") && Catch::Contains("Mesh.ElementOrder = 1"));
+  CHECK_THAT(fault_of(changed(msh2, "3 2 2 1 1 1 5 9", "3 77 2 1 1 1 5 9")),
+             Catch::StartsWith("19: an element of type 77"));
+}
+
+TEST_CASE("groups of Gmsh's two formats and sides of a text are the parts of a boundary, by name or number") {
+  const std::string names = "$PhysicalNames\n2\n1 1 \"inflow\"\n2 1 \"all\"\n$EndPhysicalNames\n";
+  const std::string of_2 = changed(msh2, "$PhysicalNames\n1\n2 1 \"all\"\n$EndPhysicalNames\n", names);
+  const std::string of_4 =
+      changed(msh4, "$Nodes", names + "$Entities\n0 1 0 0\n1 0 0 0 1 0 0 1 1 0\n$EndEntities\n$Nodes");
+  for (const std::string& text : {of_2, of_4, square + "cell 0 1 2\ncell 0 2 3\nside inflow 1 0\n"}) {
+    const Mesh mesh = parse_mesh(text);
+    REQUIRE(mesh.parts.size() == 1);
+    CHECK(mesh.parts[0].name == "inflow");
+    REQUIRE(mesh.parts[0].sides.size() == 1);
+    CHECK(held_points(mesh, false, std::vector{PartCondition{"inflow", true}}) == std::vector<char>{1, 1, 0, 0});
+  }
+  CHECK(parse_mesh(msh2).parts.at(0).name == "1");
+  CHECK(fault_of(square + "cell 0 1 2 3\nside left 0 4\n") ==
+        "6: a side has the number of a point that is not there; correct it");
+  CHECK(fault_of(square + "cell 0 1 2 3\nside left 0\n") == "6: a side has two points; give their numbers");
+}
+
 TEST_CASE("a mesh that cannot be read says on which line") {
   CHECK(fault_of("") == "1: the mesh is empty; write lines like point 0 0 and cell 0 1 2");
   CHECK(fault_of(square + "cell 0 2 1\n") == "5: cell 0 is listed clockwise; list its points the other way");
   CHECK_THAT(fault_of(square + "cell 0 1 x\n"), Catch::StartsWith("5: \"x\" is not the number of a point"));
-  CHECK_THAT(fault_of(square + "cells 0 1 2\n"), Catch::StartsWith("5: \"cells\" is neither point nor cell"));
+  CHECK_THAT(fault_of(square + "cells 0 1 2\n"), Catch::StartsWith("5: \"cells\" is neither point, cell nor side"));
   CHECK_THAT(fault_of("point 0 1e999\n"), Catch::StartsWith("1: "));
   CHECK_THAT(fault_of(square + "cell 0 1 2\n"), Catch::StartsWith("4: point 3 is in no cell"));
   // every line of a file of Gmsh, cut off behind it, and with a word that is none
