@@ -14,8 +14,6 @@
 namespace delf {
 namespace {
 
-int positive_mod(int a, int n) { return ((a % n) + n) % n; }
-
 /// The map from the sites of a lattice to those of its quotient.
 SolvePlan::Table frame(const Lattice& lattice, const Quotient& quotient) {
   SolvePlan::Table table;

@@ -17,7 +17,6 @@
 namespace delf {
 namespace {
 
-int positive_mod(int a, int n) { return ((a % n) + n) % n; }
 int parities_of(const SystemPattern& system) { return system.placement == Placement::brick_wall ? 2 : 1; }
 
 /// The couplings of an equation; checks that the lattice has all of its unknowns.

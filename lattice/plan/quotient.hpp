@@ -8,6 +8,9 @@
 
 namespace delf {
 
+/// a mod n, at least 0.
+inline int positive_mod(int a, int n) { return ((a % n) + n) % n; }
+
 /// The equations of a lattice up to repetition: on a circle those of one cell (one site; two for a brick wall), on an
 /// interval those of a short one with the same walls. Nodes are (site, component, parity of the row); only brick walls
 /// have two parities.

@@ -74,7 +74,7 @@ void require_mass(const FieldTheory& theory) {
   }
 }
 
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
+SchemeParts cgvi_parts(const FieldTheory& theory, const Problem& p) {
   require_mass(theory);
   if (theory.constraint() && p.lattice.space() != Space::point && p.lattice.space() != Space::mesh)
     throw BadInput(
@@ -134,7 +134,7 @@ std::vector<NamedScheme> on_spaces(const Problem& base) {
 }
 
 /// One of each tableau, whatever keys of elements the base has.
-std::vector<NamedScheme> variants(const Problem& base) {
+std::vector<NamedScheme> cgvi_variants(const Problem& base) {
   Problem without = base;
   without.parameters = {};
   const std::vector<Parameter> own = TimeElementKeys::parameters();
@@ -151,7 +151,7 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
-std::string label(const Problem& p) { return "cgvi, " + TimeElementKeys(p.parameters).in_words() + space_label(p); }
+std::string cgvi_label(const Problem& p) { return "cgvi, " + TimeElementKeys(p.parameters).in_words() + space_label(p); }
 
 std::vector<Parameter> keys() {
   std::vector<Parameter> list = TimeElementKeys::parameters();
@@ -160,7 +160,7 @@ std::vector<Parameter> keys() {
 }
 
 /// The order for polynomials of degree S − 1: 2(S − 1), if the rule of R points has it, 2R of Gauss, 2R − 2 of Lobatto.
-std::optional<int> order(const Problem& p) {
+std::optional<int> cgvi_order(const Problem& p) {
   const TimeElementKeys keys(p.parameters);
   if (keys.basis_name == "b-spline" || (keys.quadrature != "gauss" && keys.quadrature != "lobatto"))
     return std::nullopt;
@@ -174,10 +174,10 @@ extern const MethodEntry cgvi_method;
 const MethodEntry cgvi_method{
     .name = "cgvi",
     .formula = "continuous Galerkin variational integrators: Gauss, Lobatto IIIA-IIIB and other elements of time",
-    .build = build,
+    .build = cgvi_parts,
     .parameters = keys(),
     .on_meshes = true,
-    .label = label,
+    .label = cgvi_label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
     .energy = &hamiltonian_of_row,
@@ -185,7 +185,7 @@ const MethodEntry cgvi_method{
                   .meaning = "p = dL/dq of the step below the row: the momenta of q",
                   .components = momentum_names,
                   .values = momentum}},
-    .variants = variants,
-    .order = order};
+    .variants = cgvi_variants,
+    .order = cgvi_order};
 
 }  // namespace delf

@@ -113,7 +113,7 @@ double vu_quoc_li(const RowsInTime& rows) {
 }
 
 template <double (*energy)(const RowsInTime&)>
-EnergyOfRows make(const FieldTheory& theory, const LatticeSystem& system, const Problem&) {
+EnergyOfRows comparator_energy(const FieldTheory& theory, const LatticeSystem& system, const Problem&) {
   if (!has_energy(theory, system.lattice())) return nullptr;
   return [](const RowsInTime& rows) { return EnergyMomentum{energy(rows)}; };
 }
@@ -124,10 +124,10 @@ extern const EnergyEntry guo_energy, vu_quoc_li_energy;
 const EnergyEntry guo_energy{
     "energy of (5.15)",
     "E = k sum (dy/h)^2/2 + (Dy)(Dy+)/2 - (N + N+)/2, dy = y+ - y, D over a cell by k: kept to round-off",
-    "Guo and others, (5.15)", "guo", make<guo>};
+    "Guo and others, (5.15)", "guo", comparator_energy<guo>};
 const EnergyEntry vu_quoc_li_energy{
     "energy of (5.14)",
     "E = k sum v^2/2 + (Dy)^2/2 - N, v = (y+ - y)/h + (h/2)(D2(y + y+)/2 + (N+ - N)/(y+ - y)) at y+: kept to round-off",
-    "Vu-Quoc and Li, (5.14)", "vu-quoc-li", make<vu_quoc_li>};
+    "Vu-Quoc and Li, (5.14)", "vu-quoc-li", comparator_energy<vu_quoc_li>};
 
 }  // namespace delf

@@ -26,7 +26,7 @@ bool is_of_plain_waves(const BatchDensity& density) {
   return true;
 }
 
-SchemeParts build(const FieldTheory& theory, const Problem& p, DirectResidual stencil) {
+SchemeParts comparator_parts(const FieldTheory& theory, const Problem& p, DirectResidual stencil) {
   auto family = theory.comparator(std::move(stencil));
   if (!family)
     throw BadInput("scheme.method", fmt::format("scheme.method = {}: not written for theory.name = {}, whose potential "
@@ -60,18 +60,18 @@ extern const MethodEntry vu_quoc_li_method, guo_method, damped_method;
 const MethodEntry vu_quoc_li_method{
     .name = "vu-quoc-li",
     .formula = "comparator (5.14): conserves an energy, is not multisymplectic",
-    .build = [](const FieldTheory& theory, const Problem& p) { return build(theory, p, vu_quoc_li()); },
+    .build = [](const FieldTheory& theory, const Problem& p) { return comparator_parts(theory, p, vu_quoc_li()); },
     .own_energy = &vu_quoc_li_energy,
     .order = second};
 const MethodEntry guo_method{
     .name = "guo",
     .formula = "comparator (5.15): conserves an energy, is not multisymplectic",
-    .build = [](const FieldTheory& theory, const Problem& p) { return build(theory, p, guo()); },
+    .build = [](const FieldTheory& theory, const Problem& p) { return comparator_parts(theory, p, guo()); },
     .own_energy = &guo_energy,
     .order = second};
 const MethodEntry damped_method{
     .name = "damped",
     .formula = "comparator: leapfrog with friction 0.1, loses energy; for checks to fail on",
-    .build = [](const FieldTheory& theory, const Problem& p) { return build(theory, p, damped_leapfrog()); }};
+    .build = [](const FieldTheory& theory, const Problem& p) { return comparator_parts(theory, p, damped_leapfrog()); }};
 
 }  // namespace delf

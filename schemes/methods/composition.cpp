@@ -15,7 +15,7 @@
 namespace delf {
 namespace {
 
-constexpr int usual_order = 4;
+constexpr int usual_time_order = 4;
 
 /// The splitting of a name, or that of an order.
 Splitting splitting_of(const Problem& p) {
@@ -29,7 +29,7 @@ Splitting splitting_of(const Problem& p) {
                                  *name, named.order));
     return named.make();
   }
-  Splitting splitting = splitting_of_order(order.value_or(usual_order));
+  Splitting splitting = splitting_of_order(order.value_or(usual_time_order));
   if (splitting.drifts.empty())
     throw BadInput("scheme.order",
                    fmt::format("scheme.order = {}: compositions are of order 2, 4, 6 or 8; choose one", *order));
@@ -47,7 +47,7 @@ bool has_no_pairs(const Problem& p) {
   return p.lattice.space() == Space::point || p.lattice.space() == Space::mesh;
 }
 
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
+SchemeParts composition_parts(const FieldTheory& theory, const Problem& p) {
   if (has_no_pairs(p)) {
     if (p.parameters.has("lattice.space_order"))
       throw BadInput("lattice.space_order",
@@ -58,7 +58,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   return pair_parts(theory, p, splitting_of(p), pair_weights(pairs));
 }
 
-std::vector<NamedScheme> variants(const Problem& base) {
+std::vector<NamedScheme> composition_variants(const Problem& base) {
   std::vector<NamedScheme> schemes;
   if (has_no_pairs(base)) {
     for (int order = 2; order <= highest_splitting_order; order += 2) {
@@ -78,10 +78,10 @@ std::vector<NamedScheme> variants(const Problem& base) {
 }
 
 /// The lower one of the orders in space and in time.
-std::optional<int> order(const Problem& p) {
+std::optional<int> composition_order(const Problem& p) {
   const auto name = p.parameters.maybe<std::string>("scheme.splitting");
   const int time = name ? std::ranges::find(named_splittings(), *name, &NamedSplitting::name)->order
-                        : p.parameters.maybe<int>("scheme.order").value_or(usual_order);
+                        : p.parameters.maybe<int>("scheme.order").value_or(usual_time_order);
   if (p.lattice.space() == Space::point) return time;
   return std::min(time, p.lattice.space() == Space::mesh ? 2 : space_order_of(p));
 }
@@ -93,10 +93,10 @@ extern const MethodEntry composition_method;
 const MethodEntry composition_method{
     .name = "composition",
     .formula = "sub-steps of scheme.order over pairs of sites of lattice.space_order: explicit, any even order",
-    .build = build,
+    .build = composition_parts,
     .parameters = {unless_given(space_order_parameter()),
                    {.key = "scheme.order",
-                    .fallback = usual_order,
+                    .fallback = usual_time_order,
                     .help = "order in time: 2, 4, 6, 8",
                     .range = {.low = 2, .high = highest_splitting_order},
                     .otherwise = "that of scheme.splitting, or else 4"},
@@ -109,7 +109,7 @@ const MethodEntry composition_method{
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
     .own_energy = &composition_energy,
-    .variants = variants,
-    .order = order};
+    .variants = composition_variants,
+    .order = composition_order};
 
 }  // namespace delf

@@ -27,8 +27,8 @@
 namespace delf {
 namespace {
 
-struct Keys : ElementKeys {
-  explicit Keys(const Problem& p)
+struct DgviKeys : ElementKeys {
+  explicit DgviKeys(const Problem& p)
       : ElementKeys(p.parameters),
         flux(*std::ranges::find(named_fluxes(), p.parameters.get<std::string>("scheme.flux"), &NamedFlux::name)),
         nu(p.parameters.get<double>("scheme.nu")) {}
@@ -95,7 +95,7 @@ std::vector<Component> traces(const char* name, int d) {
 ///     straight lines   κ·(½(q⁻ + q⁺) − q)
 ///     one-sided        κ·(θ(q) − θ(q⁻)) and κ·(x⁺ − x): the phase space is (x⁺, θ_x(q⁻))
 ///     nodal            nothing: the flux reads q itself
-void observe(SchemeParts& parts, const FieldTheory& theory, const Keys& keys, const Nodes& nodes) {
+void observe(SchemeParts& parts, const FieldTheory& theory, const DgviKeys& keys, const Nodes& nodes) {
   const int d = theory.components();
   const FluxNodes at{nodes.minus, 0, nodes.plus};
   std::vector<double> weights(nodes.plus, 0.0);
@@ -141,7 +141,7 @@ void require_own_mass(const Problem& p) {
 ///
 /// Then λ = ∂₊J and μ = ∂₋J. Fields have this at every site, and φ_x in ℓ by the table of space, whose points are
 /// sites: the mass of a jump is its site's own.
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
+SchemeParts dgvi_parts(const FieldTheory& theory, const Problem& p) {
   const StencilTable space = space_table(p);
   if (p.lattice.space() != Space::point) require_own_mass(p);
   if (theory.constraint())
@@ -149,7 +149,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
                    "scheme.method = dgvi: the theory has a constraint, and this scheme has none; use "
                    "scheme.method = multisymplectic");
   require_first_order(theory);
-  const Keys keys(p);
+  const DgviKeys keys(p);
   const int d = theory.components();
   const Nodes nodes(keys.functions);
   const StencilTable element = product(time_element(keys.basis, keys.rule(), Continuity::multipliers), space);
@@ -182,7 +182,7 @@ double jump(const RowsInTime& rows) {
 }
 
 /// Each flux, with functions and Gauss's rule of as many points.
-std::vector<NamedScheme> variants(const Problem& base) {
+std::vector<NamedScheme> dgvi_variants(const Problem& base) {
   if (base.lattice.space() != Space::point) return {{base.method, base}};
   std::vector<NamedScheme> schemes;
   for (int S = 1; S <= 4; ++S)
@@ -197,8 +197,8 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
-std::string label(const Problem& p) {
-  const Keys keys(p);
+std::string dgvi_label(const Problem& p) {
+  const DgviKeys keys(p);
   return fmt::format("dgvi, {} flux, {} {} functions, {} {} points{}", keys.flux.name, keys.basis_name, keys.functions,
                      keys.quadrature, keys.points, keys.nu == 0 ? "" : fmt::format(", nu = {}", keys.nu)) +
          space_label(p);
@@ -210,7 +210,7 @@ extern const MethodEntry dgvi_method;
 const MethodEntry dgvi_method{
     .name = "dgvi",
     .formula = "discontinuous Galerkin variational integrators of theta(q).q_t - H(q): scheme.functions, scheme.flux",
-    .build = build,
+    .build = dgvi_parts,
     .parameters = {basis_parameter("lagrange-gauss"),
                    functions_parameter(3, 1),
                    quadrature_parameter(),
@@ -225,7 +225,7 @@ const MethodEntry dgvi_method{
                    space_key(),
                    space_order_key(),
                    degree_space_key()},
-    .label = label,
+    .label = dgvi_label,
     .starts = {StartRule::values},
     .start = StartRule::values,
     .energy = &hamiltonian_of_row,
@@ -233,6 +233,6 @@ const MethodEntry dgvi_method{
                   .value = jump,
                   .when_it_grows = "a mode of the doubled phase space takes over, and the energy does not show it; run "
                                    "less far, or use scheme.flux = one-sided in a gauge that allows it"}},
-    .variants = variants};
+    .variants = dgvi_variants};
 
 }  // namespace delf

@@ -225,7 +225,7 @@ std::vector<std::shared_ptr<const StencilFamily>> on_own_stencil(const FieldTheo
   return {theory.on_table(stencil_of(sites, points, sites_key, point_key))};
 }
 
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
+SchemeParts multisymplectic_parts(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.mesh()) return rows_on_mesh(theory, p);
   if (p.step_control || !p.time_steps.empty())
     throw BadInput(
@@ -253,7 +253,7 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   return parts;
 }
 
-std::vector<NamedScheme> variants(const Problem& base) {
+std::vector<NamedScheme> multisymplectic_variants(const Problem& base) {
   std::vector<NamedScheme> schemes;
   if (base.stencil == stencil_as_text) schemes.push_back({stencil_as_text, base});
   for (const NamedFormula& stencil : stencils()) {
@@ -265,7 +265,7 @@ std::vector<NamedScheme> variants(const Problem& base) {
 }
 
 /// All stencils with a name are of order two, but for symplectic Euler, which is so for some densities only.
-std::optional<int> order(const Problem& p) {
+std::optional<int> multisymplectic_order(const Problem& p) {
   if (p.stencil == stencil_as_text || p.stencil == "vertex") return std::nullopt;
   return 2;
 }
@@ -276,7 +276,7 @@ extern const MethodEntry multisymplectic_method;
 const MethodEntry multisymplectic_method{
     .name = "multisymplectic",
     .formula = "discrete Euler-Lagrange field equations of lattice.stencil (5.2)",
-    .build = build,
+    .build = multisymplectic_parts,
     .parameters = {{.key = sites_key,
                     .fallback = std::string(),
                     .help = "the sites of a stencil of your own, time first: "
@@ -310,7 +310,7 @@ const MethodEntry multisymplectic_method{
     .on_meshes = true,
     .label = [](const Problem& p) { return p.lattice.mesh() ? "Stormer-Verlet" : p.stencil; },
     .row_density = density_of_mesh_rows,
-    .variants = variants,
-    .order = order};
+    .variants = multisymplectic_variants,
+    .order = multisymplectic_order};
 
 }  // namespace delf

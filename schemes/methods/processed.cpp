@@ -62,7 +62,7 @@ Chosen chosen(const Problem& p) {
 
 bool has_processor(const Problem& p) { return p.parameters.maybe<std::string>(processor_key).value_or("on") == "on"; }
 
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
+SchemeParts processed_parts(const FieldTheory& theory, const Problem& p) {
   Chosen c = chosen(p);
   if (!has_processor(p)) c.splitting.processor = {};
   SchemeParts parts = pair_parts(theory, p, c.splitting, c.pairs);
@@ -94,7 +94,7 @@ std::string name_of(const Problem& p) {
          (has_processor(p) ? "" : ", kernel alone");
 }
 
-std::vector<NamedScheme> variants(const Problem& base) {
+std::vector<NamedScheme> processed_variants(const Problem& base) {
   std::vector<NamedScheme> schemes;
   for (const char* pairs : {"maximal", "suited"})
     for (const char* kernel : {"ti4", "b6"})
@@ -111,7 +111,7 @@ std::vector<NamedScheme> variants(const Problem& base) {
 }
 
 /// The lower one of the orders of kernel and pairs; pairs suited to a solution have an order at a finer k only.
-std::optional<int> order(const Problem& p) {
+std::optional<int> processed_order(const Problem& p) {
   if (p.parameters.get<std::string>("lattice.pairs") == "suited" || !has_processor(p)) return std::nullopt;
   const int time = p.parameters.get<std::string>("scheme.kernel") == "ti4" ? 4 : 6;
   return std::min(time, p.parameters.get<int>("lattice.space_order"));
@@ -123,7 +123,7 @@ extern const MethodEntry processed_method;
 const MethodEntry processed_method{
     .name = "processed",
     .formula = "kernels of effective order 4 and 6 over wide pairs, processed where rows are recorded: explicit",
-    .build = build,
+    .build = processed_parts,
     .parameters = {{.key = "lattice.analyticity",
                     .fallback = 2.2,
                     .help = "half-width of the strip in which the field is analytic, for suited pairs",
@@ -152,7 +152,7 @@ const MethodEntry processed_method{
     .label = name_of,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
-    .variants = variants,
-    .order = order};
+    .variants = processed_variants,
+    .order = processed_order};
 
 }  // namespace delf

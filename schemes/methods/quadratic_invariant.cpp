@@ -64,7 +64,7 @@ std::optional<LinearRow> linear_row(const LatticeSystem& system) {
 /// A, B and c are the constant parts of the equations. It is kinetic energy plus potential, but for a constant; for (5.12)
 /// it is the energy of Marsden–Patrick–Shkoller's footnote 4. Nothing if the equations are not linear, depend on t or x, are
 /// of more than two rows, or of more than fields.
-EnergyOfRows make(const FieldTheory&, const LatticeSystem& system, const Problem& problem) {
+EnergyOfRows quadratic_invariant_of(const FieldTheory&, const LatticeSystem& system, const Problem& problem) {
   const auto is_field = [](const Component& c) { return c.role == Role::field && !c.position; };
   if (problem.winding != 0 || system.height() != 1 || system.placement() != Placement::every_site ||
       !is_variational(system) || !std::ranges::all_of(system.all_components(), is_field) || !is_linear(system))
@@ -92,6 +92,6 @@ const EnergyEntry quadratic_invariant{
     "quadratic invariant",
     "E = v'(B - 2A)v/8h - m'(B + 2A)m/2h with v = y+ - y, m = (y + y+)/2, A y+ + B y + A'y- the linear equations of "
     "the scheme itself; kept to round-off",
-    "Marsden-Patrick-Shkoller, footnote 4, for (5.12)", "linear theories on two rows", make};
+    "Marsden-Patrick-Shkoller, footnote 4, for (5.12)", "linear theories on two rows", quadratic_invariant_of};
 
 }  // namespace delf

@@ -123,7 +123,7 @@ double delay_of(const Problem& p, const NamedTime& time) {
   return delay;
 }
 
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
+SchemeParts r_adaptive_parts(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.space() != Space::interval || p.lattice.left() != Wall::fixed || p.lattice.right() != Wall::fixed)
     throw BadInput("lattice.space",
                    "scheme.method = r-adaptive: the mesh moves between two fixed walls; use "
@@ -217,7 +217,7 @@ double largest_multiplier(const RowsInTime& rows) {
   return most;
 }
 
-std::string label(const Problem& p) {
+std::string r_adaptive_label(const Problem& p) {
   if (strategy(p) == "uniform") return fmt::format("linear elements, uniform mesh, {}", time_of(p).name);
   const std::string monitor = p.parameters.get<std::string>("mesh.monitor");
   return fmt::format("r-adaptive, {}, {}, {}{}", strategy(p), time_of(p).name, monitor,
@@ -236,7 +236,7 @@ extern const MethodEntry r_adaptive_method;
 const MethodEntry r_adaptive_method{
     .name = "r-adaptive",
     .formula = "moving mesh of any density, by multipliers or slaved to the field: Tyranowski-Desbrun",
-    .build = build,
+    .build = r_adaptive_parts,
     .parameters = {{.key = "scheme.strategy",
                     .fallback = "multiplier",
                     .help = "the mesh is varied, with multipliers; slaved to the field (control); or stands still",
@@ -269,7 +269,7 @@ const MethodEntry r_adaptive_method{
                     .fallback = "exact",
                     .help = "Gauss's points in a cell, 2 to 20; exact: no points where theory and element have the "
                             "integral in closed form, and 10 elsewhere, exact to rounding for sine-gordon"}},
-    .label = label,
+    .label = r_adaptive_label,
     .starts = {StartRule::legendre, StartRule::exact},
     .start = StartRule::legendre,
     .energy = &hamiltonian_of_row,

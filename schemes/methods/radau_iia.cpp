@@ -20,7 +20,7 @@ namespace {
 int stages(const Problem& p) { return p.parameters.get<int>("scheme.stages"); }
 
 /// No action has these equations, and so Noether's theorem says nothing of the theory's symmetries.
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
+SchemeParts radau_iia_parts(const FieldTheory& theory, const Problem& p) {
   if (theory.constraint())
     throw BadInput("scheme.method",
                    "scheme.method = radau-iia: this version has no constraints at its stages; use scheme.method = "
@@ -32,9 +32,9 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
   return parts;
 }
 
-std::string label(const Problem& p) { return fmt::format("Radau IIA, {} stages{}", stages(p), space_label(p)); }
+std::string radau_iia_label(const Problem& p) { return fmt::format("Radau IIA, {} stages{}", stages(p), space_label(p)); }
 
-std::optional<int> order(const Problem& p) { return order_in_space(p, 2 * stages(p) - 1); }
+std::optional<int> radau_iia_order(const Problem& p) { return order_in_space(p, 2 * stages(p) - 1); }
 
 }  // namespace
 
@@ -42,7 +42,7 @@ extern const MethodEntry radau_iia_method;
 const MethodEntry radau_iia_method{
     .name = "radau-iia",
     .formula = "comparator: Runge-Kutta method Radau IIA of scheme.stages, loses energy, is not multisymplectic",
-    .build = build,
+    .build = radau_iia_parts,
     .parameters = {{.key = "scheme.stages",
                     .fallback = 3,
                     .help = "stages s: the order is 2s - 1",
@@ -51,10 +51,10 @@ const MethodEntry radau_iia_method{
                    space_order_key(),
                    degree_space_key()},
     .on_meshes = true,
-    .label = label,
+    .label = radau_iia_label,
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
     .energy = &hamiltonian_of_row,
-    .order = order};
+    .order = radau_iia_order};
 
 }  // namespace delf

@@ -15,8 +15,8 @@
 namespace delf {
 namespace {
 
-struct Keys {
-  explicit Keys(const Problem& p)
+struct SpacetimeKeys {
+  explicit SpacetimeKeys(const Problem& p)
       : degree_time(p.parameters.get<int>("scheme.degree_time")),
         degree_space(p.parameters.get<int>("scheme.degree_space")),
         quadrature(p.parameters.get<std::string>("scheme.quadrature")) {}
@@ -24,7 +24,7 @@ struct Keys {
   std::string quadrature;
 };
 
-SchemeParts build(const FieldTheory& theory, const Problem& p) {
+SchemeParts spacetime_parts(const FieldTheory& theory, const Problem& p) {
   if (p.lattice.space() == Space::point)
     throw BadInput("scheme.method",
                    "scheme.method = spacetime: an element of space and time; use lattice.space = circle "
@@ -33,14 +33,14 @@ SchemeParts build(const FieldTheory& theory, const Problem& p) {
     throw BadInput("scheme.method",
                    "scheme.method = spacetime: this version has no constraints at the nodes of elements; "
                    "use scheme.method = multisymplectic");
-  const Keys keys(p);
+  const SpacetimeKeys keys(p);
   return element_parts(theory,
                        spacetime_element(keys.degree_time, keys.degree_space,
                                          keys.quadrature == "gauss" ? TimeQuadrature::gauss : TimeQuadrature::lobatto));
 }
 
 /// Degrees of which the nodal orders in time and space, 2p_t and p_x + 2, go together.
-std::vector<NamedScheme> variants(const Problem& base) {
+std::vector<NamedScheme> spacetime_variants(const Problem& base) {
   std::vector<NamedScheme> schemes;
   for (const auto& [time, space] : {std::pair{1, 1}, {1, 2}, {2, 2}, {2, 3}, {3, 4}, {4, 6}})
     for (const char* quadrature : {"gauss", "lobatto"}) {
@@ -55,8 +55,8 @@ std::vector<NamedScheme> variants(const Problem& base) {
   return schemes;
 }
 
-std::string label(const Problem& p) {
-  const Keys keys(p);
+std::string spacetime_label(const Problem& p) {
+  const SpacetimeKeys keys(p);
   return fmt::format("spacetime of degrees {} and {}, {}", keys.degree_time, keys.degree_space, keys.quadrature);
 }
 
@@ -66,7 +66,7 @@ extern const MethodEntry spacetime_method;
 const MethodEntry spacetime_method{
     .name = "spacetime",
     .formula = "spacetime Galerkin elements of scheme.degree_time, scheme.degree_space, Lobatto nodes",
-    .build = build,
+    .build = spacetime_parts,
     .parameters = {{.key = "scheme.degree_time",
                     .fallback = 2,
                     .help = "degree of an element in time",
@@ -79,10 +79,10 @@ const MethodEntry spacetime_method{
                     .fallback = "gauss",
                     .help = "the quadrature in time",
                     .choices = {"gauss", "lobatto"}}},
-    .label = label,
+    .label = spacetime_label,
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
     .energy = &hamiltonian_of_row,
-    .variants = variants};
+    .variants = spacetime_variants};
 
 }  // namespace delf

@@ -15,7 +15,7 @@ namespace {
 /// steps. Other roots were at 15.3 and more (Lotka–Volterra, h = 1/16), of another branch of a constraint at 10¹⁶.
 constexpr double farthest = 6;
 constexpr double clearly = 0.25;   ///< a part of the way that no doubt begins below
-constexpr double rounding = 1e-8;  ///< of the values: differences of high order are rounding below
+constexpr double rounding_of_motion = 1e-8;  ///< of the values: differences of high order are rounding below
 
 /// Corrections that go no further than this part of |y|, or that all shrink by four and more, leave no other root near
 /// (Kantorovich).
@@ -82,7 +82,7 @@ Stop RootWatch::judge(const SectionRing& ring, std::int64_t J, std::int64_t solv
     std::size_t p = 2;
     for (std::size_t q = 3; q <= last; ++q)
       if (f.differ[q] < f.differ[p]) p = q;
-    const double least = rounding * f.size;
+    const double least = rounding_of_motion * f.size;
     if (f.leaves[p] > farthest * f.differ[p] + least) return Stop::other_root;
     if (most < most_rows && f.leaves[p] > f.differ[p] + least) stop = Stop::doubtful_root;
   }

@@ -20,7 +20,7 @@ namespace delf {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double rounding_unit = std::numeric_limits<double>::epsilon();
 // Programs whose steps are solved by iteration leave some of the force.
 constexpr double least_share = 1e-8;
 // 2⁻³¹ is how often noise has the same sign in all of them.
@@ -181,7 +181,7 @@ void ForceShare::add_to_averages(const Window& window, std::int64_t row, const E
   }
   const double least = relative_bound_ * equations.scale();
   // A coefficient such as 2 − h²m² that was rounded is off by the same in all rows: E ~ ε |y|/h², a quarter of the terms.
-  passed_over_ = std::max(passed_over_, std::max(precision_.asked, epsilon / 4) * equations.scale());
+  passed_over_ = std::max(passed_over_, std::max(precision_.asked, rounding_unit / 4) * equations.scale());
   const auto &below = window.rows[row - 1 - window.first_row], &above = window.rows[row + 1 - window.first_row];
   for (std::size_t n = 0; n < at_.size(); ++n) {
     if (std::isnan(equations.newest()[n]) || !has_force(n) || !(std::abs(force[n]) > least)) continue;
@@ -299,7 +299,7 @@ SiteSeverity ForceShare::severity(std::size_t n) const {
           .row = at_[n].row,
           .error = at_[n].error,
           .force = at_[n].force,
-          .rounding = coefficients_ * (8 * epsilon * value + precision_.solver * largest_value_)};
+          .rounding = coefficients_ * (8 * rounding_unit * value + precision_.solver * largest_value_)};
 }
 
 std::vector<SiteSeverity> ForceShare::sites() const {

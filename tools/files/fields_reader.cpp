@@ -19,8 +19,6 @@ namespace delf {
 
 namespace {
 
-BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
-
 int rank_of(hid_t dataset) {
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   return H5Sget_simple_extent_ndims(space);

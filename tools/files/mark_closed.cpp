@@ -21,7 +21,7 @@ using Byte = unsigned char;
 constexpr std::array<Byte, 9> signature{0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n', 3};
 constexpr std::size_t size_of_addresses = 9, consistency_flags = 11, end_of_file = 28, checksum = 44, size = 48;
 
-std::uint64_t number(std::span<const Byte> bytes) {
+std::uint64_t number_of_bytes(std::span<const Byte> bytes) {
   std::uint64_t value = 0;
   for (std::size_t n = bytes.size(); n-- > 0;) value = value << 8 | bytes[n];
   return value;
@@ -38,7 +38,7 @@ std::uint32_t hash_of(std::span<const Byte> bytes) {
   const auto add = [&] {
     for (std::uint32_t& word : h) {
       const std::size_t count = std::min<std::size_t>(4, bytes.size());
-      word += static_cast<std::uint32_t>(number(bytes.first(count)));
+      word += static_cast<std::uint32_t>(number_of_bytes(bytes.first(count)));
       bytes = bytes.subspan(count);
     }
   };
@@ -74,7 +74,7 @@ void mark_closed(const std::filesystem::path& path) noexcept {
   const std::span<Byte> all(block), hashed = all.first(checksum), sum = all.subspan(checksum);
   if (fstat(file, &now) == 0 && pread(file, block.data(), size, 0) == static_cast<ssize_t>(size) &&
       std::equal(signature.begin(), signature.end(), block.begin()) && block[size_of_addresses] == 8 &&
-      number(sum) == hash_of(hashed)) {
+      number_of_bytes(sum) == hash_of(hashed)) {
     block[consistency_flags] = 0;
     put(static_cast<std::uint64_t>(now.st_size), all.subspan(end_of_file, 8));
     put(hash_of(hashed), sum);

@@ -21,8 +21,6 @@
 namespace delf {
 namespace {
 
-BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
-
 std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -20,8 +20,6 @@
 namespace delf {
 namespace {
 
-BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
-
 std::vector<std::string_view> words_of(std::string_view line) {
   constexpr std::string_view separators = ",; \t\r";
   std::vector<std::string_view> words;

@@ -6,7 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "lattice/error.hpp"
+
 namespace delf {
+
+/// An error of a file of rows.
+inline BadInput bad_file(const std::string& what) { return {"initial.file", what}; }
 
 /// Rows in a file, to start from. Errors of the file are thrown as BadInput with the key initial.file, or
 /// initial.frame for a missing frame.

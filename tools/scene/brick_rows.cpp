@@ -12,7 +12,7 @@ namespace delf {
 
 namespace {
 
-constexpr auto key = "lattice.first_row";
+constexpr auto brick_key = "lattice.first_row";
 
 bool is_brick_wall(const Problem& p) {
   if (!find_method(p.method).reads_stencil) return false;
@@ -25,7 +25,7 @@ bool is_brick_wall(const Problem& p) {
 
 void take_first_row(Scene& scene, const std::filesystem::path& file, int frame) {
   Problem& p = scene.problem;
-  if (scene.settings.find(key) || !is_brick_wall(p)) return;
+  if (scene.settings.find(brick_key) || !is_brick_wall(p)) return;
   long long row = frame;
   try {
     const auto rows = open_rows(file);
@@ -35,10 +35,10 @@ void take_first_row(Scene& scene, const std::filesystem::path& file, int frame) 
     }
     const auto* fields = dynamic_cast<const FieldsReader*>(rows.get());
     if (fields)
-      if (const auto keys = recorded_keys(fields->scene()); keys.contains(key) && keys.at(key) == "1") ++row;
+      if (const auto keys = recorded_keys(fields->scene()); keys.contains(brick_key) && keys.at(brick_key) == "1") ++row;
   } catch (const BadInput&) {
   }
-  p.parameters[key] = static_cast<int>(row & 1);
+  p.parameters[brick_key] = static_cast<int>(row & 1);
 }
 
 }  // namespace delf

@@ -14,24 +14,24 @@ namespace delf {
 
 namespace {
 
-using Names = std::vector<std::string>;
+using KeyNames = std::vector<std::string>;
 
-Names stencil_choices() {
-  Names names = stencil_names_and_aliases();
+KeyNames stencil_choices() {
+  KeyNames names = stencil_names_and_aliases();
   names.emplace_back(stencil_as_text);
   return names;
 }
 
-Names start_rules() {
-  Names names;
+KeyNames start_rules() {
+  KeyNames names;
   for (const StartRule rule : all_start_rules) names.emplace_back(to_string(rule));
   return names;
 }
 
 /// The names of entries: to make every theory for its name would cost each start of the program.
 template <class Entries>
-Names names_of(const Entries& entries) {
-  Names names;
+KeyNames names_of(const Entries& entries) {
+  KeyNames names;
   for (const auto* entry : entries) names.push_back(entry->name);
   return names;
 }
@@ -40,7 +40,7 @@ Names names_of(const Entries& entries) {
 std::string usual_start() {
   std::string text;
   for (const StartRule rule : all_start_rules) {
-    Names names;
+    KeyNames names;
     for (const MethodEntry* entry : method_entries())
       if (entry->start == rule) names.push_back(entry->name);
     if (!names.empty()) text += fmt::format("{} for method = {}; ", to_string(rule), fmt::join(names, " or "));

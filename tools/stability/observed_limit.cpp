@@ -18,7 +18,7 @@ namespace delf {
 namespace {
 
 constexpr double noise = 1e-8;      // small enough for sin φ = φ
-constexpr double blown_up = 1e6;    // no ghost that grows like the number of steps comes so far
+constexpr double exponential_growth = 1e6;    // no ghost that grows like the number of steps comes so far
 constexpr double faster = 100;      // between two quarters of a run: steps³ makes it 13, steps 2
 constexpr double like_steps = 1.7;  // 2 for what grows like the number of steps
 
@@ -263,7 +263,7 @@ ObservedGrowth observe_growth(const Problem& problem, int steps, std::uint64_t s
       simulation.step(looked_at);
       if (!looked_at) continue;
       const double largest = largest_field(simulation, row);
-      if (!(largest < blown_up * noise)) return {Growth::exponential, std::log(largest / noise) / n, {}};
+      if (!(largest < exponential_growth * noise)) return {Growth::exponential, std::log(largest / noise) / n, {}};
       if (4 * n > steps && 2 * n <= steps) second = std::max(second, largest);
       if (4 * n > 3 * steps) fourth = std::max(fourth, largest);
     }

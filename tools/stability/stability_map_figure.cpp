@@ -20,7 +20,7 @@ constexpr const char* words[] = {"bounded", "grows linearly", "grows exponential
 double step_of(const std::vector<double>& v) { return (v.back() - v.front()) / static_cast<double>(v.size() - 1); }
 
 // Rectangles of one verdict each: a table of x, log10 y, number of the verdict.
-std::string cells(const StabilityMap& m) {
+std::string cells_of_map(const StabilityMap& m) {
   std::string text;
   for (std::size_t j = 0; j < m.mass_steps.size(); ++j)
     for (std::size_t i = 0; i < m.courants.size(); ++i)
@@ -69,7 +69,7 @@ std::string stability_map_figure(const StabilityFindings& f, const std::string& 
   for (std::size_t p = 0; p < count; ++p) {
     const StabilityMap& m = f.maps[first + p];
     if (m.courants.size() < 2 || m.mass_steps.size() < 2) continue;
-    write_text_file(scratch / fmt::format("cells-{}-{}", part, p), cells(m));
+    write_text_file(scratch / fmt::format("cells-{}-{}", part, p), cells_of_map(m));
     write_text_file(scratch / fmt::format("edges-{}-{}", part, p), edges(m));
     std::vector<double> decades;
     for (const double mass : m.mass_steps) decades.push_back(std::log10(mass));

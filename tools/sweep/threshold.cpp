@@ -11,7 +11,7 @@ namespace delf {
 
 namespace {
 
-struct Point {
+struct Bisected {
   double at, number;
 };
 
@@ -25,7 +25,7 @@ Threshold find_threshold(const SweepRequest& request, const std::string& number,
     std::vector<SweptRun> runs;
     for (const double place : places) runs.push_back(request.run({fmt::format("{}", place)}));
     const std::vector<SweepRow> rows = pool.rows_of(runs);
-    std::vector<Point> all;
+    std::vector<Bisected> all;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (rows[i].status.empty()) return all;
       result.rows.push_back(rows[i]);
@@ -39,10 +39,10 @@ Threshold find_threshold(const SweepRequest& request, const std::string& number,
     if (pool.number_is_unknown()) all.clear();
     return all;
   };
-  std::vector<Point> ends = points({b.low, b.high});
+  std::vector<Bisected> ends = points({b.low, b.high});
   if (ends.size() < 2) return result;
   result.level = b.level.value_or(0.5 * (ends[0].number + ends[1].number));
-  const auto above = [&](const Point& p) { return p.number > result.level; };
+  const auto above = [&](const Bisected& p) { return p.number > result.level; };
   if (above(ends[0]) == above(ends[1]))
     throw BadScene(
         fmt::format("command line: --sweep.bisect: {} is {:.6g} at {} = {} and {:.6g} at {}, both on one side of "
@@ -52,8 +52,8 @@ Threshold find_threshold(const SweepRequest& request, const std::string& number,
   while (ends[1].at - ends[0].at > b.accuracy) {
     const double low = ends[0].at, quarter = 0.25 * (ends[1].at - low);
     if (!(low + quarter > low)) break;  // rounding
-    std::vector<Point> all{ends[0]};
-    const std::vector<Point> between = points({low + quarter, low + 2 * quarter, low + 3 * quarter});
+    std::vector<Bisected> all{ends[0]};
+    const std::vector<Bisected> between = points({low + quarter, low + 2 * quarter, low + 3 * quarter});
     if (between.size() < 3) break;
     all.insert(all.end(), between.begin(), between.end());
     all.push_back(ends[1]);

@@ -71,7 +71,7 @@ double power_of(const DrawnSite& s) {
 }
 
 /// Powers of ten of the weights.
-ColourScale scale_of(const std::vector<DrawnSite>& sites) {
+ColourScale scale_of_sites(const std::vector<DrawnSite>& sites) {
   double least = 300, most = -300;
   for (const DrawnSite& s : sites)
     if (contributes(s) && std::isfinite(s.weight))
@@ -104,7 +104,7 @@ std::vector<Layer> layers() {
 }
 
 // Writes the layers that have sites, and plots them one over the other.
-std::string plots(const std::vector<DrawnSite>& sites, const Frame& frame, const std::filesystem::path& scratch) {
+std::string plots_of_sites(const std::vector<DrawnSite>& sites, const Frame& frame, const std::filesystem::path& scratch) {
   std::string text;
   for (const Layer& layer : layers()) {
     std::string table;
@@ -148,7 +148,7 @@ std::string worst_region_figure(const VerdictSource& source, const std::filesyst
   const WorstRegion& worst = source.verdict.worst;
   if (worst.sites.empty()) return {};
   const Frame frame(worst.sites);
-  const ColourScale scale = scale_of(worst.sites);
+  const ColourScale scale = scale_of_sites(worst.sites);
   const auto tics = [](double range) { return std::max(1.0, nice_step(range, 10)); };
   return palette +
          verdict_title(source.scene + ": where the form formula holds worst",
@@ -166,7 +166,7 @@ std::string worst_region_figure(const VerdictSource& source, const std::filesyst
              frame.left, right, bottom, top, tics(scale.most - scale.least), scale.least, scale.most,
              tics(frame.x_most - frame.x_least), tics(frame.t_most - frame.t_least), frame.x_least, frame.x_most,
              frame.t_least, frame.t_most) +
-         legend(frame.dense) + plots(worst.sites, frame, scratch);
+         legend(frame.dense) + plots_of_sites(worst.sites, frame, scratch);
 }
 
 }  // namespace delf

@@ -39,7 +39,7 @@ class Kink final : public Pulse {
   std::unique_ptr<KinkProfile> profile_;
 };
 
-double lasts_until(const StateBuild& build, double position, double speed, const KinkProfile& profile) {
+double kink_lasts_until(const StateBuild& build, double position, double speed, const KinkProfile& profile) {
   if (!build.exact) return 0;
   const Lattice& lattice = build.lattice;
   // at rest between walls that keep their values, any piece of the kink is a solution
@@ -55,7 +55,7 @@ std::unique_ptr<State> any_kink(const StateBuild& build, bool mirrored) {
                                         ": in phi4 it joins -1 and 1, and a circle cannot; use lattice.space=interval");
   const double x0 = centre(build), v = subluminal(build, build.entry.name);
   auto profile = kink_profile(build);
-  const PulseFrame frame{x0, v, mirrored ? -1 : 1, lasts_until(build, x0, v, *profile)};
+  const PulseFrame frame{x0, v, mirrored ? -1 : 1, kink_lasts_until(build, x0, v, *profile)};
   return std::make_unique<Kink>(build, frame, mirrored, std::move(profile));
 }
 

@@ -116,7 +116,7 @@ Pair read(const StateBuild& build) {
 }
 
 // Away from the collision the pulses are at x₀ ± (|vt − d/2| + |ln v|/(γm)).
-double lasts_until(const StateBuild& build, const Pair& pair) {
+double pair_lasts_until(const StateBuild& build, const Pair& pair) {
   if (!build.exact) return 0;
   const double rate = pair.gamma() * pair.mass, L = build.lattice.length();
   const double to_the_edge = build.lattice.is_circle() ? L / 2 : std::min(pair.position, L - pair.position);
@@ -127,7 +127,7 @@ double lasts_until(const StateBuild& build, const Pair& pair) {
 template <class Pulses>
 std::unique_ptr<State> kink_pair(const StateBuild& build, int winding) {
   const Pair pair = read(build);
-  return std::make_unique<Pulses>(build, PulseFrame{pair.position, 0, winding, lasts_until(build, pair)}, pair);
+  return std::make_unique<Pulses>(build, PulseFrame{pair.position, 0, winding, pair_lasts_until(build, pair)}, pair);
 }
 
 // The exact solution of integrable theories.

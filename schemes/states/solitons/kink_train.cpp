@@ -39,7 +39,7 @@ class KinkTrain final : public State {
   double sign_, position_, mass_;
 };
 
-TrainProfile profile_of(const StateBuild& build) {
+TrainProfile train_profile(const StateBuild& build) {
   const double m = pulse_mass(build),
                period = build.lattice.length() / std::abs(static_cast<double>(build.request.winding.value_or(1)));
   return build.values.has("initial.speed") ? TrainProfile::from_speed(subluminal(build, "kink"), period, m)
@@ -54,7 +54,7 @@ std::unique_ptr<State> kink_train(const StateBuild& build) {
     throw BadInput("boundary.winding", "boundary.winding = " + std::to_string(n) + ": " + std::to_string(sites) +
                                            " sites resolve at most " + std::to_string(sites / 2) +
                                            " kinks; raise lattice.sites");
-  return std::make_unique<KinkTrain>(profile_of(build), n, centre(build), pulse_mass(build));
+  return std::make_unique<KinkTrain>(train_profile(build), n, centre(build), pulse_mass(build));
 }
 
 Parameter speed() {
@@ -79,6 +79,6 @@ const StateEntry kink_train_state{
     initial::kink_train,
     false,
     {},
-    [](const StateBuild& build) { return initial::profile_of(build).width(); }};
+    [](const StateBuild& build) { return initial::train_profile(build).width(); }};
 
 }  // namespace delf

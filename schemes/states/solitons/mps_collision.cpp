@@ -69,12 +69,12 @@ class MpsCollision final : public State {
   double epsilon_, mass_;
 };
 
-TrainProfile profile_of(const StateBuild& build) {
+TrainProfile collision_profile(const StateBuild& build) {
   return TrainProfile::from_epsilon(build.number("initial.epsilon"), build.lattice.length() / 4, pulse_mass(build));
 }
 
 std::unique_ptr<State> mps_collision(const StateBuild& build) {
-  return std::make_unique<MpsCollision>(profile_of(build), build.number("initial.epsilon"), pulse_mass(build));
+  return std::make_unique<MpsCollision>(collision_profile(build), build.number("initial.epsilon"), pulse_mass(build));
 }
 
 }  // namespace
@@ -92,6 +92,6 @@ const StateEntry mps_collision_state{
     initial::mps_collision,
     false,
     {},
-    [](const StateBuild& build) { return initial::profile_of(build).width(); }};
+    [](const StateBuild& build) { return initial::collision_profile(build).width(); }};
 
 }  // namespace delf

@@ -10,7 +10,7 @@
 namespace delf {
 namespace {
 
-constexpr double round_off = std::numeric_limits<double>::epsilon();
+constexpr double round_off_of_step = std::numeric_limits<double>::epsilon();
 
 /// The change of y by a change of 1 in a source term, [source][component]: exact on a circle, where one impulse shows
 /// it. In the middle of an interval it is near enough: the tolerance is tested by it, and the change itself is what
@@ -85,7 +85,7 @@ void StepTolerance::see_span(const RowTable& table) {
 /// not below what rounding leaves at its size.
 double StepTolerance::allowed(double size) const {
   const double spanned = span_ > 0 ? std::min(span_, size) : size;
-  return std::max(tolerance_ * spanned, 4 * round_off * size);
+  return std::max(tolerance_ * spanned, 4 * round_off_of_step * size);
 }
 
 /// The share of the tolerance that is left to a prediction: its error has the same sign step after step, and moves the
