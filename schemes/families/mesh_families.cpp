@@ -15,8 +15,6 @@
 namespace delf {
 namespace {
 
-std::size_t at(JetSlot slot) { return delf::at(slot); }
-
 bool couples_gradient(const BatchDensity& density) {
   const int d = density.components();
   for (int a = 0; a < d; ++a)

@@ -17,10 +17,10 @@ namespace delf {
 
 namespace {
 
-constexpr double noise = 1e-8;      // small enough for sin φ = φ
-constexpr double exponential_growth = 1e6;    // no ghost that grows like the number of steps comes so far
-constexpr double faster = 100;      // between two quarters of a run: steps³ makes it 13, steps 2
-constexpr double like_steps = 1.7;  // 2 for what grows like the number of steps
+constexpr double noise_size = 1e-8;         // small enough for sin φ = φ
+constexpr double exponential_growth = 1e6;  // no ghost that grows like the number of steps comes so far
+constexpr double faster = 100;              // between two quarters of a run: steps³ makes it 13, steps 2
+constexpr double like_steps = 1.7;          // 2 for what grows like the number of steps
 
 double largest_field(const Simulation& simulation, std::vector<double>& row) {
   simulation.copy_row(0, row);
@@ -35,7 +35,7 @@ std::vector<std::vector<double>> random_rows(const Simulation& simulation, int s
   std::vector<std::vector<double>> rows(simulation.starting_rows());
   for (auto& row : rows) {
     row.resize(delf::at(sites) * simulation.components().size());
-    for (double& y : row) y = noise * (std::ldexp(static_cast<double>(generator() >> 11), -52) - 1);
+    for (double& y : row) y = noise_size * (std::ldexp(static_cast<double>(generator() >> 11), -52) - 1);
   }
   return rows;
 }
@@ -263,7 +263,8 @@ ObservedGrowth observe_growth(const Problem& problem, int steps, std::uint64_t s
       simulation.step(looked_at);
       if (!looked_at) continue;
       const double largest = largest_field(simulation, row);
-      if (!(largest < exponential_growth * noise)) return {Growth::exponential, std::log(largest / noise) / n, {}};
+      if (!(largest < exponential_growth * noise_size))
+        return {Growth::exponential, std::log(largest / noise_size) / n, {}};
       if (4 * n > steps && 2 * n <= steps) second = std::max(second, largest);
       if (4 * n > 3 * steps) fourth = std::max(fourth, largest);
     }
