@@ -33,11 +33,11 @@ std::string coordinate(const FigureSource& source, std::size_t component) {
   return source.film.components() == 1 ? "q" : fmt::format("q{}", component + 1);
 }
 
-constexpr std::size_t in_a_panel = 6, most_panels = 4;  // as many curves as there are colours
+constexpr std::size_t in_a_panel = 6, most_trajectories = 4;  // as many curves as there are colours
 
 // More coordinates than colours: panels of some, one below the other, each with the names of its curves.
 std::string panels(const FigureSource& source, std::size_t d) {
-  const std::size_t count = std::min(most_panels, (d + in_a_panel - 1) / in_a_panel);
+  const std::size_t count = std::min(most_trajectories, (d + in_a_panel - 1) / in_a_panel);
   std::string body = fmt::format(
       "set multiplot layout {},1 margins screen 0.105,0.965,0.12,(top-0.025) spacing screen 0,0.06\n"
       "set format x ''\nunset xlabel\n",
@@ -92,11 +92,11 @@ std::string trajectory_figure(const FigureSource& source, const std::filesystem:
   write_text_file(scratch / "trajectory", table_of(source));
   const std::size_t d = source.film.components();
   std::string body =
-      figure_title(
-          fmt::format("{}: the coordinate{} over time", source.scene, d == 1 ? "" : "s"),
-          fmt::format(
-              "{}{}", subtitle(source),
-              d > most_panels * in_a_panel ? fmt::format("; the first {} of {}", most_panels * in_a_panel, d) : "")) +
+      figure_title(fmt::format("{}: the coordinate{} over time", source.scene, d == 1 ? "" : "s"),
+                   fmt::format("{}{}", subtitle(source),
+                               d > most_trajectories * in_a_panel
+                                   ? fmt::format("; the first {} of {}", most_trajectories * in_a_panel, d)
+                                   : "")) +
       sides + rest +
       fmt::format(
           "set xlabel 'time t'\nset xrange [{}:{}]\nset label 103 '{}{}' at screen 0.025,0.4875 center rotate "
@@ -118,8 +118,7 @@ std::string trajectory_figure(const FigureSource& source, const std::filesystem:
 std::string orbit_figure(const FigureSource& source, const std::filesystem::path& scratch) {
   if (source.lattice.space() != Space::point || source.film.frames() < 2 || source.film.components() != 2) return {};
   write_text_file(scratch / "orbit", table_of(source));
-  return figure_title(fmt::format("{}: the orbit", source.scene), subtitle(source)) +
-         rest +
+  return figure_title(fmt::format("{}: the orbit", source.scene), subtitle(source)) + rest +
          fmt::format(
              "set xlabel {} noenhanced\nset ylabel {} noenhanced\nset size ratio -1\n{}plot 'orbit' using 2:3 with "
              "lines "

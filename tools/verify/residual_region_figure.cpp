@@ -38,21 +38,21 @@ std::set<double> tolerances(const Verdict& v) {
   return all;
 }
 
-struct Range {
+struct LogRange {
   double least, most;
 };
 
 double stencils_of(const RegionPoint& p) { return static_cast<double>(std::max<std::int64_t>(p.stencils, 1)); }
 
-Range range_of_stencils(const std::vector<RegionPoint>& points) {
-  Range range{1e300, 0};
+LogRange range_of_stencils(const std::vector<RegionPoint>& points) {
+  LogRange range{1e300, 0};
   for (const RegionPoint& p : points)
     range = {std::min(range.least, stencils_of(p)), std::max(range.most, stencils_of(p))};
   return {range.least / 1.5, std::max(range.most, 10 * range.least) * 1.5};
 }
 
-Range range_of_values(const Verdict& v) {
-  Range range{1e-17, 1e-15};
+LogRange range_of_values(const Verdict& v) {
+  LogRange range{1e-17, 1e-15};
   for (const RegionPoint& p : v.points)
     if (std::isfinite(p.value))
       range = {std::min(range.least, drawn_logarithmic(p.value)), std::max(range.most, drawn_logarithmic(p.value))};
@@ -105,7 +105,7 @@ std::string residual_region_figure(const VerdictSource& source, const std::files
   const Verdict& v = source.verdict;
   if (v.points.empty()) return {};
   const std::vector<std::string> kinds = kinds_of(v.points);
-  const Range x = range_of_stencils(v.points), y = range_of_values(v);
+  const LogRange x = range_of_stencils(v.points), y = range_of_values(v);
   write_text_file(scratch / "regions", tables(v.points, kinds, y.most));
   const bool zero = std::ranges::any_of(v.points, [](const RegionPoint& p) { return p.value < drawn_zero; });
   const double decades = std::log10(y.most / y.least);

@@ -35,7 +35,7 @@ constexpr double one_percent = 0.01;
 // The scene gives the solution itself.
 bool is_formula(const State* exact) { return dynamic_cast<const SmoothState*>(exact) != nullptr; }
 
-struct Range {
+struct ValueRange {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   void add(double x) { least = std::min(least, x), most = std::max(most, x); }
   double width() const { return std::max(0.0, most - least); }
@@ -46,13 +46,13 @@ double range_of(const State& state, const Lattice& lattice, double end) {
   const std::size_t d = state.components(), N = delf::at(lattice.sites());
   const int times = std::clamp(2048 / lattice.sites(), 2, 64);
   std::vector<double> row(N * d);
-  std::vector<Range> ranges(d);
+  std::vector<ValueRange> ranges(d);
   for (int n = 0; n < times; ++n) {
     state.values(end * n / (times - 1), lattice, row);
     for (std::size_t at = 0; at < row.size(); ++at) ranges[at % d].add(row[at]);
   }
   double most = 0;
-  for (const Range& range : ranges) most = std::max(most, range.width());
+  for (const ValueRange& range : ranges) most = std::max(most, range.width());
   return most;
 }
 
@@ -148,7 +148,7 @@ Found Warnings::spurious_mode(std::span<const double> last_row) const {
       return last_row[lattice.wrapped(i) * d + c] + (i < 0 ? -monodromy() : i >= N ? monodromy() : 0);
     };
     double sum = 0;
-    Range values;
+    ValueRange values;
     for (int i = 0; i < N; ++i) sum += (i % 2 == 0 ? 1 : -1) * (y(i - 1) - 2 * y(i) + y(i + 1)), values.add(y(i));
     largest = std::max(largest, std::abs(sum) / (4 * N));
     range = std::max(range, values.width());
