@@ -148,7 +148,7 @@ std::string spacetime(const ComplexScene& c, std::span<const double> values, std
              "splot '{}' using 1:2:3 with "
              "pm3d\n",
              values.empty() ? "c1" : "mean",
-             c.cells() <= most_with_edges ? "set pm3d border lc rgb '#ffffff' lw 0.3\n" : "",
+             c.cells() <= most_with_edges ? "set pm3d border lc rgb '#808080' lw 0.3\n" : "",
              nice_step(scale.most - scale.least, 8), colour_bar(values.empty() ? "level" : c.fields.front().name),
              name);
 }
