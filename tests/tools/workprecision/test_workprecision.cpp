@@ -198,10 +198,10 @@ TEST_CASE("an interrupted comparison writes what it has, and ends with exit code
   const WithScene folder;
   const Ran ran =
       shell(folder, "'" + program_path() +
-                    "' workprecision small.ini --run.until=50 --workprecision.budget=1e9 --out cut "
-                    // the first run is over at once, however slow the machine, and the second never
-                    "--workprecision.sites=32,400000 --workprecision.schemes=rectangle-symmetric & p=$!; sleep 2; "
-                    "kill -INT $p; wait $p");
+                        "' workprecision small.ini --run.until=50 --workprecision.budget=1e9 --out cut "
+                        // the first run is over at once, however slow the machine, and the second never
+                        "--workprecision.sites=32,400000 --workprecision.schemes=rectangle-symmetric & p=$!; sleep 2; "
+                        "kill -INT $p; wait $p");
   INFO(ran.err);
   CHECK(ran.code == 130);
   CHECK(contains(ran.out, "not finished (interrupted)"));
@@ -380,3 +380,15 @@ TEST_CASE("peers are in the same run as the engine, and the tables compare them"
   CHECK(Json::parse(read(folder / "other/workprecision.json"))["runs"].size() == 1);
 }
 #endif
+
+TEST_CASE("the report explains names, and says a reason that schemes share once with their number") {
+  const WithScene folder;
+  const Ran ran = delf_program(folder,
+                               "workprecision small.ini --workprecision.sites=16,32 --workprecision.peers=off "
+                               "--workprecision.schemes='composition (2,4),midpoint,trapezoidal,vertex' --out out");
+  INFO(ran.out << ran.err);
+  CHECK(contains(ran.out, "composition (s,p): sub-steps of leapfrog"));
+  CHECK_FALSE(contains(ran.out, "odeint NAME"));
+  CHECK(contains(ran.out, "3 schemes: is for mechanics and couples no neighbours"));
+  CHECK(contains(ran.out, "midpoint; trapezoidal; vertex"));
+}
