@@ -217,8 +217,8 @@ const std::vector<Command>& table() {
        "Steps a scene. Into DIR (results/NAME of the scene, if not given) go scene.ini, which runs again to the same\n"
        "bits; series.csv, one line for each recorded row; summary.json; fields.h5, the recorded rows; and figures.\n"
        "Ctrl-C ends a run early, with all so far written.\n\n"
-       "  --overwrite  keep no earlier run: without --out and this, another run in results/NAME becomes results/NAME~1,\n"
-       "               or the next number that is free\n\n" +
+       "  --overwrite  keep no earlier run: without it, and without --out, another run that is in\n"
+       "               results/NAME becomes results/NAME~1, or the next number that is free\n\n" +
            std::string("The energy of a run is\n  E = ") + energy_formula +
            ".\nIt is measured, not conserved, and known to second order for schemes of higher order too." +
            own_energies() + own_energies_of_rows() +

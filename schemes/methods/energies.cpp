@@ -51,8 +51,8 @@ class MomentaBelow {
 extern const EnergyEntry rectangle_energy, midway_energy, quadratic_invariant, vu_quoc_li_energy, guo_energy,
     composition_energy;
 
-const EnergyEntry rectangle_energy{"jets of the symmetric rectangle", energy_formula, "Marsden-Patrick-Shkoller, footnote 4, of any density",
-                                   ""};
+const EnergyEntry rectangle_energy{"jets of the symmetric rectangle", energy_formula,
+                                   "Marsden-Patrick-Shkoller, footnote 4, of any density", ""};
 const EnergyEntry midway_energy{
     "the midpoint of two rows",
     "q_t ∂ℓ/∂q_t − ℓ, midway between the last two rows, q_t = (q⁺ − q)/h, whatever the scheme; order 2 in h",

@@ -115,7 +115,7 @@ std::string spacetime(const ComplexScene& c, std::span<const double> values, std
                       const fs::path& scratch) {
   if (c.cells() > most_cells) return {};
   const StencilList& list = *c.stencils;
-  constexpr int most_with_edges = 3000;
+  constexpr int most_with_edges = 6000;
   std::string table;
   std::vector<double> shown(values.begin(), values.end());
   for (const StencilList::Entry& e : list.stencils) {

@@ -31,15 +31,15 @@ KeptResults::KeptResults(const fs::path& folder, const std::string& resolved) : 
     throw SystemFailure(
         fmt::format("{}: cannot be kept: {}; choose another --out, or --overwrite", folder.string(), failed.message()));
   }
-  std::fputs(
-      fmt::format("{}: the earlier run is kept as {} (--overwrite keeps none)\n", folder.string(), kept_.string())
-          .c_str(),
-      stderr);
 }
 
 KeptResults::~KeptResults() {
+  if (kept_.empty()) return;
   std::error_code none;
-  if (kept_.empty() || fs::exists(folder_ / "scene.ini", none)) return;
+  if (fs::exists(folder_ / "scene.ini", none)) {
+    std::fputs(fmt::format("{}: the earlier run, kept; --overwrite keeps none\n", kept_.string()).c_str(), stdout);
+    return;
+  }
   fs::remove_all(folder_, none);
   fs::rename(kept_, folder_, none);
 }

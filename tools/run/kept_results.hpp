@@ -12,7 +12,7 @@ class KeptResults {
   /// Moves nothing where there is no run, nor where the same run goes again: its scene.ini is `resolved`. Throws
   /// SystemFailure if a run is under way there.
   KeptResults(const std::filesystem::path& folder, const std::string& resolved);
-  /// Moves it back if the next run has begun no files.
+  /// Says where it is, or moves it back if the next run has begun no files.
   ~KeptResults();
   KeptResults(const KeptResults&) = delete;
   KeptResults& operator=(const KeptResults&) = delete;

@@ -105,9 +105,7 @@ class Panel {
                            gnuplot_quoted(runs_[r].words));
     }
     write_text_file(scratch / name, table);
-    const auto quoted = [&](const std::string& text) {
-      return "set ylabel '" + text + "' font ',10' offset screen 0.01,0\n";
-    };
+    const auto quoted = [&](const std::string& text) { return "set ylabel '" + text + "' font ',10\n"; };
     return wide ? "set logscale y\nset format y '10^{%T}'\n" + quoted(magnitude) + plots + "\n"
                 : "unset logscale y\nset format y '%h'\n" +
                       quoted(plain ? label : fmt::format("{}   (10^{{{}}})", label, power)) + plots + "\n";
@@ -134,7 +132,7 @@ std::string compared_runs_figure(const std::vector<ComparedRun>& all, const fs::
   if (energies.empty() && errors.empty()) return {};
   std::size_t longest = 0;
   for (const ComparedRun& run : runs) longest = std::max(longest, columns_of(run.words));
-  const double right = 1 - std::clamp(0.065 + 0.009 * static_cast<double>(longest), 0.12, 0.4);
+  const double right = 1 - std::clamp(0.085 + 0.009 * static_cast<double>(longest), 0.12, 0.4);
   const bool both = !energies.empty() && !errors.empty();
   std::string script = fmt::format(
       "set multiplot\nset lmargin at screen 0.125\nset rmargin at screen {}\nset xrange [0:*]\n"

@@ -139,7 +139,12 @@ SweptRun SweepRequest::run(const std::vector<std::string>& of_keys) const {
   otherwise("output.figures", "off");
   otherwise("output.checkpoint", "0");  // a run that is cut short is run again
   if (table) otherwise("output.fields", "off");
-  return {scene_of(read_settings(file, settings)), of_keys};
+  SweptRun run{scene_of(read_settings(file, settings)), of_keys};
+  // Titles and formats given here are those of the sweep's own figure.
+  std::erase_if(run.scene.warnings, [](const std::string& warning) {
+    return warning.starts_with("command line: --output.titles") || warning.starts_with("command line: --output.format");
+  });
+  return run;
 }
 
 SweepRequest read_sweep_request(const fs::path& scene_file, const std::vector<Setting>& on_command_line,
