@@ -104,7 +104,7 @@ std::string Warnings::finer_or_why_not(const Outcome& outcome, double energy_of_
   } catch (const Error&) {
     return finer();
   }
-  return "and more sites do not bring it nearer: the state is rougher than any lattice, or the energy has no limit";
+  return "more sites do not bring it nearer: the state is rough, or the lattice itself is the model";
 }
 /// Elements have several, and are as fine as their nodes.
 int Warnings::nodes_in_cell() const {

@@ -198,10 +198,10 @@ TEST_CASE("an interrupted comparison writes what it has, and ends with exit code
   const WithScene folder;
   const Ran ran =
       shell(folder, "'" + program_path() +
-                        "' workprecision small.ini --run.until=50 --workprecision.budget=1e9 --out cut "
-                        // the first run is over at once, however slow the machine, and the second never
-                        "--workprecision.sites=32,400000 --workprecision.schemes=rectangle-symmetric & p=$!; sleep 2; "
-                        "kill -INT $p; wait $p");
+                    "' workprecision small.ini --run.until=50 --workprecision.budget=1e9 --out cut "
+                    // the first run is over at once, however slow the machine, and the second never
+                    "--workprecision.sites=32,400000 --workprecision.schemes=rectangle-symmetric & p=$!; sleep 2; "
+                    "kill -INT $p; wait $p");
   INFO(ran.err);
   CHECK(ran.code == 130);
   CHECK(contains(ran.out, "not finished (interrupted)"));
