@@ -57,7 +57,7 @@ std::vector<std::string> lines_of_terms(const std::string& sum, std::size_t widt
   return lines;
 }
 
-/// The same as text for a terminal.
+/// A sum of terms as text for a terminal, in lines of its width.
 std::string broken(const std::string& sum, std::size_t indent) {
   constexpr std::size_t width = 110;
   return fmt::format("{}", fmt::join(lines_of_terms(sum, width - indent), "\n" + std::string(indent, ' ')));

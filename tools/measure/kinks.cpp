@@ -66,9 +66,7 @@ std::vector<KinkAt> kinks_of(const MeasuredField& field, std::span<const double>
     return field.angle ? std::floor((phi - levels[0]) / period)
                        : static_cast<double>(std::ranges::upper_bound(levels, phi) - levels.begin());
   };
-  const auto level = [&](double n) {
-    return field.angle ? levels[0] + n * period : levels[static_cast<std::size_t>(n) - 1];
-  };
+  const auto level = [&](double n) { return field.angle ? levels[0] + n * period : levels[std::lround(n) - 1]; };
   for (int i = 0; i < lattice.cells(); ++i) {
     const double a = field.at(row, i), b = field.at(row, i + 1), from = sheet(a), to = sheet(b);
     // A field that grows without bound turns any number of times in a cell: these are no kinks.

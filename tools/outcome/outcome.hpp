@@ -54,7 +54,8 @@ struct Outcome {
   std::map<Continued, std::int64_t> continued;  ///< steps that were solved by continuation, by the reason
   double energy_initial = unknown, energy_final = unknown, energy_error_max = unknown;
   std::string energy_of;         ///< what observes the energy of a row, in words; empty: not said
-  double energy_work = unknown;  ///< of a density that reads t, up to the last row
+  bool reads_time = false;       ///< the density changes its energy
+  double energy_work = unknown;  ///< by this up to the last row, where records tell
   double momentum_initial = unknown, momentum_final = unknown, charge_final = unknown;
   double constraint_max = unknown;  ///< the largest |G|, if the scheme has constraints
   std::string maxima_over;          ///< the rows that these maxima, and those below, are over, in words

@@ -37,8 +37,10 @@ std::string energy_in_words(const Outcome& o) {
   std::string words = fmt::format("{:.10g}", o.energy_final);
   if (!o.energy_of.empty()) words += fmt::format(" of row {}, by {}", o.steps, o.energy_of);
   // There is no error relative to an energy of zero, and none against row 0 where the density does work.
-  if (std::isfinite(o.energy_work))
-    return words + fmt::format("; the density reads t, and its work is {:.4g} of that", o.energy_work);
+  if (o.reads_time)
+    return words + "; the density reads t" +
+           (std::isfinite(o.energy_work) ? fmt::format(", and its work is {:.4g} of that", o.energy_work)
+                                         : ", whose work more records would tell");
   if (!std::isfinite(o.energy_error_max)) return words;
   words += fmt::format("; relative error {:.3g} at most", o.energy_error_max);
   for (const Conserved& c : o.conserved)

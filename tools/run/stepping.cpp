@@ -396,7 +396,7 @@ void Stepping::finish() {
   measure_error();
   outcome_.measures = measures_.results();
   if (!started()) return;
-  outcome_.energy_work = warnings_.work().value_or(Outcome::unknown);
+  outcome_.reads_time = warnings_.work().reads_time(), outcome_.energy_work = warnings_.work().value();
   outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
   if (section_ && section_->points() == 0)
     outcome_.warnings.push_back(

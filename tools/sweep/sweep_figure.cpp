@@ -113,7 +113,7 @@ std::string words_of(const SweepRequest& request, const SweepOutcome& outcome, s
 
 std::string draw_side_by_side(const SweepRequest& request, const SweepOutcome& outcome, const FigureForm& form,
                               const std::filesystem::path& folder) {
-  constexpr std::size_t most_runs = 24;  // as many as colours and dashes tell apart
+  constexpr std::size_t most_runs = 24;  // as many as colours and dashes distinguish
   if (outcome.rows.size() > most_runs || request.table) return {};
   std::vector<std::size_t> keys;
   for (std::size_t a = 0; a < request.keys.size(); ++a) keys.push_back(a);

@@ -147,7 +147,8 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   const Found at_ends = ends(outcome);
   // An energy that walls or the density's own t change leaves any band.
   const auto band = [&] {
-    return at_ends || work() ? Found() : energy_off_band(energy_errors, "reduce lattice.time_step, or run less far");
+    return at_ends || work_.reads_time() ? Found()
+                                         : energy_off_band(energy_errors, "reduce lattice.time_step, or run less far");
   };
   for (Found& found : std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row),
                                          at_ends ? Found() : energy(outcome), band(), error(outcome), at_ends,
@@ -204,7 +205,8 @@ Found Warnings::energy(const Outcome& outcome) const {
   if (!state || nodes_in_cell() > 1) return {};
   const auto exact = exact_energy(*state, simulation_.theory().density(), scene_.problem.lattice, width_, 0);
   if (!exact) return {};
-  const KnownWork known = work() ? KnownWork{*work(), work_.uncertainty()} : KnownWork{};
+  if (work_.reads_time() && std::isnan(work_.value())) return {};
+  const KnownWork known = work_.reads_time() ? KnownWork{work_.value(), work_.uncertainty()} : KnownWork{};
   if (!energy_off_start(outcome, *exact, one_percent, "", known)) return {};
   return energy_off_start(outcome, *exact, one_percent, finer_or_why_not(outcome, *exact), known);
 }

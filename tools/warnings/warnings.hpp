@@ -27,8 +27,8 @@ class Warnings {
   /// The fields of a row before TurnOfStep::rows, recorded or not.
   void see_early(std::span<const double> fields) { turn_.see(fields); }
   void visit(SavedState&);
-  /// The work of a density that reads t, up to the last recorded row; nothing of others.
-  std::optional<double> work() const { return work_.value(); }
+  /// The work of a density that reads t, up to the last recorded row.
+  const WorkInTime& work() const { return work_; }
   /// One line each, with a remedy, after the last row.
   std::vector<std::string> of(const Outcome&, const Trace& energy_errors, std::span<const double> last_row) const;
 

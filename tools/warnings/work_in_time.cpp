@@ -45,11 +45,12 @@ void WorkInTime::see() {
   ++seen_;
 }
 
-std::optional<double> WorkInTime::value() const { return largest_power_ > 0 ? std::optional(all_.work) : std::nullopt; }
+double WorkInTime::value() const {
+  constexpr std::int64_t few = 5;
+  return reads_time() && seen_ >= few ? all_.work : std::numeric_limits<double>::quiet_NaN();
+}
 
 double WorkInTime::uncertainty() const {
-  constexpr std::int64_t few = 5;
-  if (seen_ < few) return std::numeric_limits<double>::infinity();
   Sum half = half_;
   if (half.time < all_.time) half.take(all_.time, all_.power);
   return std::abs(half.work - all_.work) + step_ * largest_power_;

@@ -20,8 +20,10 @@ class WorkInTime {
 
   /// The newest two rows of the simulation.
   void see();
-  /// W so far; nothing where the density does not read t.
-  std::optional<double> value() const;
+  /// True if ∂ℓ/∂t is not zero on a row that was seen.
+  bool reads_time() const { return largest_power_ > 0; }
+  /// W so far; not a number where the density does not read t, or too few rows were seen.
+  double value() const;
   /// The part of W that its records may have missed: what the rule on half of them differs by, and half a step's work.
   double uncertainty() const;
   void visit(SavedState&);

@@ -293,7 +293,9 @@ TEST_CASE("a run whose formula is refused has the refusal as its failure") {
 TEST_CASE("runs are shown side by side: by compare, and by a sweep over words") {
   const Folder folder;
   const std::string scene = folder.write("kink.ini", scene_with_kink());
-  const auto table = [](const Ran& ran) { return contains(ran.out, "error_linf") && contains(ran.out, "energy_error_max"); };
+  const auto table = [](const Ran& ran) {
+    return contains(ran.out, "error_linf") && contains(ran.out, "energy_error_max");
+  };
   const Ran words = delf_program(folder, "compare '" + scene + "' --lattice.stencil=triangle,rectangle --out words");
   INFO(words.err);
   REQUIRE(words.code == 0);
