@@ -96,25 +96,30 @@ void refuse(const Arguments& arguments, bool keys) {
     throw BadScene(fmt::format("command line: --out: `{}` writes no files; leave it out", arguments.words[0]));
 }
 
+std::string resolved_of(const Scene& scene) {
+  const InitialRows initial(scene);
+  return resolved_text(scene, initial.rule(), initial.description());
+}
+std::string resolved_of(const ComplexScene& mesh) { return resolved_text(mesh); }
+
+/// Runs a scene in a folder, whose earlier run is kept unless the folder is named, or --overwrite given.
+template <class AnyScene>
+ExitCode run_keeping(const Arguments& arguments, const AnyScene& scene, const std::filesystem::path& folder) {
+  std::optional<KeptResults> earlier;
+  if (std::error_code none;
+      !arguments.out && !arguments.overwrite && std::filesystem::exists(folder / "scene.ini", none))
+    earlier.emplace(folder, resolved_of(scene));
+  return run(scene, folder);
+}
+
 ExitCode carry_out_run(const Arguments& arguments) {
   Settings settings = settings_of(arguments);
-  std::optional<KeptResults> earlier;
-  const auto folder = [&](const Scene& scene, const auto& resolved) {
-    const std::filesystem::path usual = "results/" + scene.name;
-    std::error_code none;
-    if (!arguments.out && !arguments.overwrite && std::filesystem::exists(usual / "scene.ini", none))
-      earlier.emplace(usual, resolved());
-    return arguments.out ? std::filesystem::path(*arguments.out) : usual;
-  };
   if (is_on_mesh(settings)) {
     const ComplexScene mesh = complex_scene_of(std::move(settings));
-    return run(mesh, folder(mesh.scene, [&] { return resolved_text(mesh); }));
+    return run_keeping(arguments, mesh, arguments.out.value_or("results/" + mesh.scene.name));
   }
   const Scene scene = scene_of(std::move(settings));
-  return run(scene, folder(scene, [&] {
-               const InitialRows initial(scene);
-               return resolved_text(scene, initial.rule(), initial.description());
-             }));
+  return run_keeping(arguments, scene, arguments.out.value_or("results/" + scene.name));
 }
 
 ExitCode carry_out_resume(const Arguments& arguments) {
