@@ -23,7 +23,7 @@ namespace po = boost::program_options;
 
 po::parsed_options parsed(const std::vector<std::string>& words) {
   po::options_description known;
-  known.add_options()("help", "")("version", "")("latex", "")("out", po::value<std::string>());
+  known.add_options()("help", "")("version", "")("latex", "")("overwrite", "")("out", po::value<std::string>());
   known.add_options()("fields", po::value<std::string>())("nearby", po::value<std::string>());
   known.add_options()("dataset", po::value<std::string>());
   for (const Parameter& key : keys()) known.add_options()(key.key.c_str(), po::value<std::string>());
@@ -47,6 +47,8 @@ Arguments taken_apart(const std::vector<std::string>& words) {
       arguments.version = true;
     } else if (option.string_key == "latex" && !option.unregistered) {
       arguments.latex = true;
+    } else if (option.string_key == "overwrite" && !option.unregistered) {
+      arguments.overwrite = true;
     } else if (option.string_key == "out") {
       if (value.empty()) throw BadScene("command line: --out: give a directory, as --out DIR");
       if (arguments.out)
@@ -104,6 +106,9 @@ ExitCode carry_out(const std::vector<std::string>& words) {
   check_files_of_rows(command, arguments);
   if (arguments.latex && !command.writes_latex)
     throw BadScene(fmt::format("command line: --latex: `{}` prints no formulas; `delf plan` does", command.name));
+  if (arguments.overwrite && !command.keeps_earlier)
+    throw BadScene(
+        fmt::format("command line: --overwrite: `{}` keeps nothing of an earlier run; `delf run` does", command.name));
   return command.carry_out(arguments);
 }
 

@@ -8,16 +8,17 @@
 #include <cstdio>
 #include <utility>
 
-#include "schemes/methods/method_registry.hpp"
 #include "schemes/methods/energies.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/plan.hpp"
-#include "tools/report/text_columns.hpp"
 #include "tools/resume.hpp"
+#include "tools/rows/initial_rows.hpp"
+#include "tools/run/kept_results.hpp"
 #include "tools/run/run.hpp"
 #include "tools/scene/scene.hpp"
 #include "tools/scene/shipped_scenes.hpp"
@@ -54,12 +55,14 @@ void warn_of_other_sections(const Arguments& arguments) {
   for (const Setting& s : arguments.keys) {
     const std::string_view section = section_of(s.key);
     if (section == find_command(arguments.words[0]).section) continue;
+    std::vector<std::string> readers;
     for (const Command& other : commands())
-      if (section == other.section)
-        std::fputs(
-            fmt::format("command line: --{} = {}: warning: only `delf {}` reads it\n", s.key, s.value, other.name)
-                .c_str(),
-            stderr);
+      if (section == other.section) readers.push_back(fmt::format("`delf {}`", other.name));
+    if (!readers.empty())
+      std::fputs(fmt::format("command line: --{} = {}: warning: only {} reads it\n", s.key, s.value,
+                             fmt::join(readers, " or "))
+                     .c_str(),
+                 stderr);
   }
 }
 
@@ -93,14 +96,30 @@ void refuse(const Arguments& arguments, bool keys) {
     throw BadScene(fmt::format("command line: --out: `{}` writes no files; leave it out", arguments.words[0]));
 }
 
+std::string resolved_of(const Scene& scene) {
+  const InitialRows initial(scene);
+  return resolved_text(scene, initial.rule(), initial.description());
+}
+std::string resolved_of(const ComplexScene& mesh) { return resolved_text(mesh); }
+
+/// Runs a scene in a folder, whose earlier run is kept unless the folder is named, or --overwrite given.
+template <class AnyScene>
+ExitCode run_keeping(const Arguments& arguments, const AnyScene& scene, const std::filesystem::path& folder) {
+  std::optional<KeptResults> earlier;
+  if (std::error_code none;
+      !arguments.out && !arguments.overwrite && std::filesystem::exists(folder / "scene.ini", none))
+    earlier.emplace(folder, resolved_of(scene));
+  return run(scene, folder);
+}
+
 ExitCode carry_out_run(const Arguments& arguments) {
   Settings settings = settings_of(arguments);
   if (is_on_mesh(settings)) {
     const ComplexScene mesh = complex_scene_of(std::move(settings));
-    return run(mesh, arguments.out.value_or("results/" + mesh.scene.name));
+    return run_keeping(arguments, mesh, arguments.out.value_or("results/" + mesh.scene.name));
   }
   const Scene scene = scene_of(std::move(settings));
-  return run(scene, arguments.out.value_or("results/" + scene.name));
+  return run_keeping(arguments, scene, arguments.out.value_or("results/" + scene.name));
 }
 
 ExitCode carry_out_resume(const Arguments& arguments) {
@@ -137,6 +156,10 @@ ExitCode carry_out_verify(const Arguments& arguments) {
 
 ExitCode carry_out_sweep(const Arguments& arguments) {
   return sweep(file_of(arguments), arguments.keys, arguments.out);
+}
+
+ExitCode carry_out_compare(const Arguments& arguments) {
+  return sweep(file_of(arguments), arguments.keys, arguments.out, SweepKind::compare);
 }
 
 ExitCode carry_out_convergence(const Arguments& arguments) {
@@ -186,27 +209,32 @@ std::string own_energies() {
 std::string own_energies_of_rows() {
   std::string text =
       "\nThe rows of some schemes have an energy of their own: energy_own of series.csv, and in `delf verify`.";
-  const auto add = [&](const std::string& of, const std::string& formula) {
-    const char* begin = "\n  ";
-    for (const std::string& line : wrapped(of + ": " + formula, 112)) text += begin + line, begin = "\n    ";
-  };
   for (const EnergyEntry* entry : energy_entries())
-    if (!entry->rows.empty()) add(entry->rows, entry->formula);
+    if (!entry->rows.empty()) text += fmt::format("\n  {}: {}", entry->rows, entry->formula);
   return text;
 }
 
 const std::vector<Command>& table() {
   static const std::vector<Command> all{
-      {"run", "delf run SCENE [--out DIR] [--KEY=VALUE ...]", "step a scene, and record it",
+      {"run",
+       "delf run SCENE [--out DIR] [--KEY=VALUE ...]",
+       "step a scene, and record it",
        "Steps a scene. Into DIR (results/NAME of the scene, if not given) go scene.ini, which runs again to the same\n"
        "bits; series.csv, one line for each recorded row; summary.json; fields.h5, the recorded rows; and figures.\n"
-       "Ctrl-C ends a run early, with all so far written.\n\n" +
+       "Ctrl-C ends a run early, with all so far written.\n\n"
+       "  --overwrite  keep no earlier run: without it, and without --out, another run that is in\n"
+       "               results/NAME becomes results/NAME~1, or the next number that is free\n\n" +
            std::string("The energy of a run is\n  E = ") + energy_formula +
            ".\nIt is measured, not conserved, and known to second order for schemes of higher order too." +
            own_energies() + own_energies_of_rows() +
            "\n\n"
            "Keys, with what holds if they are not given (a key on the command line wins over the file):",
-       true, carry_out_run},
+       true,
+       carry_out_run,
+       {},
+       false,
+       false,
+       true},
       {"resume", "delf resume DIR [--run.until=T] [--KEY=VALUE ...]", "go on with a run that was ended early",
        "Goes on with the run of the folder DIR from its last checkpoint, and leaves what the run would have given "
        "without "
@@ -265,13 +293,24 @@ const std::vector<Command>& table() {
        "Several keys give all their pairs. Each run is a process of its own; one that fails is a row with its status.\n"
        "Into DIR (results/NAME-sweep, if not given) go sweep.csv and sweep.json, a row for each run with its numbers;\n"
        "sweep.rows, from which the same command goes on after Ctrl-C or worse; runs/, the folder of each run; and a\n"
-       "figure of one number over one or two keys. Runs draw figures of their own only if output.figures=on is given\n"
+       "figure of one number over one or two keys, or of energies and errors over time where all values are words.\n"
+       "Runs draw figures of their own only if output.figures=on is given\n"
        "here. Exit code 4, 3 or 2 if a run failed: of the system, its numerics, or its input.\n\n"
        "  delf sweep collision --scheme.method=multisymplectic,vu-quoc-li --lattice.courant=0.125:0.5:0.125\n"
        "  delf sweep phi4-collision --sweep.bisect=initial.speed=0.255:0.265 --sweep.level=1.25\n\n"
        "Numbers are those of summary.json, and the measures of the scene: `delf help measures`.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_sweep, "sweep"},
+      {"compare", "delf compare SCENE [--out DIR] --KEY=a,b,c [--KEY=VALUE ...]",
+       "energies and errors of a few runs, side by side",
+       "Runs a scene for every value of the keys that are given several, as `delf sweep` does, and prints a table of\n"
+       "errors, energy errors and cost. The figure has the energy error of each run over time and, where the exact\n"
+       "solution is known, the error of each recorded row. Into DIR (results/NAME-compare, if not given) go the files\n"
+       "of `delf sweep`; the same command again draws and prints without running.\n\n"
+       "  delf compare kink --lattice.stencil=triangle,rectangle,rectangle-symmetric\n"
+       "  delf compare collision --scheme.method=multisymplectic,vu-quoc-li,guo --output.every=1\n\n"
+       "The keys of its own section, which `delf sweep` shares; all others are those of `delf help run`:",
+       true, carry_out_compare, "sweep"},
       {"convergence", "delf convergence SCENE [--out DIR] [--KEY=VALUE ...]",
        "errors and their order, at steps halved again and again",
        "Runs a scene at its own steps, and at half, a quarter, ... of both h and k, and prints N, k, h, the error, the "

@@ -2,6 +2,10 @@
 #include "tools/equations.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string>
+#include <vector>
 
 #include "jets/expressions/equations.hpp"
 #include "jets/expressions/stencil_text.hpp"
@@ -32,27 +36,40 @@ std::shared_ptr<const SymbolicDensity> text_of(const Problem& p, const Simulatio
   return text_of(p.theory, p.parameters);
 }
 
-/// A sum broken between its terms, so that lines are no longer than what a terminal shows.
-std::string broken(const std::string& sum, std::size_t indent) {
-  constexpr std::size_t width = 110;
-  std::string text;
-  std::size_t line = 0, begin = 0;
+/// A sum broken between its terms into lines of at most `width` letters, where terms are that short.
+std::vector<std::string> lines_of_terms(const std::string& sum, std::size_t width) {
+  std::vector<std::string> lines{""};
+  std::size_t begin = 0;
   int depth = 0;
   const auto put = [&](std::size_t end) {
-    if (line > 0 && line + end - begin > width - indent) text.append(1, '\n').append(indent, ' '), line = 0;
-    text.append(sum, begin, end - begin);
-    line += end - begin;
+    if (!lines.back().empty() && lines.back().size() + end - begin > width) lines.emplace_back();
+    lines.back().append(sum, begin, end - begin);
     begin = end;
   };
   for (std::size_t i = 0; i < sum.size(); ++i) {
-    if (sum[i] == '(') ++depth;
-    if (sum[i] == ')') --depth;
+    if (sum[i] == '(' || sum[i] == '{') ++depth;
+    if (sum[i] == ')' || sum[i] == '}') --depth;
     const bool between =
         sum[i] == ' ' && i + 2 < sum.size() && sum[i + 2] == ' ' && (sum[i + 1] == '+' || sum[i + 1] == '-');
     if (depth == 0 && between) put(i);
   }
   put(sum.size());
-  return text;
+  return lines;
+}
+
+/// A sum of terms as text for a terminal, in lines of its width.
+std::string broken(const std::string& sum, std::size_t indent) {
+  constexpr std::size_t width = 110;
+  return fmt::format("{}", fmt::join(lines_of_terms(sum, width - indent), "\n" + std::string(indent, ' ')));
+}
+
+/// An equation of its own in LaTeX, in lines that fit on a page.
+std::string displayed(const std::string& formula) {
+  constexpr std::size_t width = 220;  // of the source: indices and fractions take little room on paper
+  const std::vector<std::string> lines = lines_of_terms(formula, width);
+  if (lines.size() == 1) return fmt::format("\\[\n  {}\n\\]\n", formula);
+  return fmt::format("\\[\n  \\begin{{aligned}}\n  &{}\n  \\end{{aligned}}\n\\]\n",
+                     fmt::join(lines, " \\\\\n  &\\quad"));
 }
 
 }  // namespace
@@ -94,7 +111,7 @@ std::string equations_in_latex(const Problem& p, const Simulation& simulation) {
                                "theory.density for --latex",
                                p.theory));
   std::string text;
-  const auto add = [&](const std::string& formula) { text += fmt::format("\\[\n  {}\n\\]\n", formula); };
+  const auto add = [&](const std::string& formula) { text += displayed(formula); };
   add("\\ell = " + density_formula(*density, Notation::latex));
   for (const std::string& equation : field_equations(*density, Notation::latex)) add(equation);
   if (const StencilTable* table = table_of(p, simulation))

@@ -9,6 +9,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/measure/measurement.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/scene/keys.hpp"
 
 namespace delf {
@@ -27,21 +28,110 @@ std::string values_of(const Parameter& key) {
   return low ? "; " + from : high ? fmt::format("; at most {}", key.range.high) : "";
 }
 
-// A command with a section of its own lists that section's keys; other commands list the keys that all share.
+constexpr std::size_t width = 100;  ///< of all that help prints
+
+/// A first line behind what it begins with, and further ones indented as far as `indent`.
+void print_hanging(const std::string& begin, const std::string& text, std::size_t indent) {
+  std::string before = begin;
+  for (const std::string& line : wrapped(text, width - indent)) {
+    fmt::print("{}{}\n", before, line);
+    before.assign(indent, ' ');
+  }
+}
+
+/// Text with lines of at most `width` columns: paragraphs are filled, and a line that is indented, or aligned by blanks,
+/// stays one, broken where it is longer.
+void print_filled(std::string_view text) {
+  std::string paragraph;
+  const auto put = [&] {
+    print_hanging("", paragraph, 0);
+    paragraph.clear();
+  };
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+    if (const std::size_t gap = line.find("  ", indent); line.empty() || indent > 0 || gap != line.npos) {
+      put();
+      const std::size_t column =
+          gap == line.npos ? indent + 2 : std::min(line.find_first_not_of(' ', gap), line.size());
+      if (columns_of(line) <= width) fmt::print("{}\n", line);
+      else
+        print_hanging(std::string(line.substr(0, gap == line.npos ? indent : column)),
+                      std::string(line.substr(gap == line.npos ? indent : column)), column);
+    } else {
+      paragraph += (paragraph.empty() ? "" : " ") + std::string(line);
+    }
+  }
+  put();
+}
+
+/// The purpose of the keys of a section.
+constexpr std::pair<std::string_view, const char*> purposes[] = {
+    {"theory", "the field theory, its parameters, or its density as text"},
+    {"lattice", "the stencil, space and its sites, the step in time"},
+    {"scheme", "the method, and how it solves a step"},
+    {"initial", "the fields that a run starts from"},
+    {"boundary", "the ends of an interval, the boundary of a mesh, the gain around a circle"},
+    {"run", "how far, with which random numbers, on how many threads"},
+    {"output", "what is recorded, drawn and written"},
+    {"stencil", "a stencil of your own"},
+    {"mesh", "sites that move with the field"}};
+
+/// "scheme.method = composition" of a help that begins with "method = composition: ", and the help without it.
+std::pair<std::string, std::string> reader_of(const Parameter& key) {
+  for (const std::string chooser : {"scheme.method", "initial.state"}) {
+    const std::string begin = chooser.substr(chooser.find('.') + 1) + " = ";
+    const auto end = key.help.find(": ");
+    if (key.help.starts_with(begin) && end != key.help.npos)
+      return {chooser.substr(0, chooser.find('.') + 1) + key.help.substr(0, end), key.help.substr(end + 2)};
+  }
+  return {"", key.help};
+}
+
+void print_key(const Parameter& key, const std::string& help) {
+  const auto value = key.otherwise.empty() ? fallback_of(key) : key.otherwise;
+  print_hanging(
+      fmt::format("  {:<22} ", key.key),
+      fmt::format("{}{} ({}{})", help, key.unit.empty() ? "" : fmt::format(" [{}]", key.unit), value, values_of(key)),
+      25);
+}
+
+// A command with a section of its own lists that section's keys; other commands list the keys that all share. In a
+// section the keys that one method or one state reads come last, together.
 void print_keys(std::string_view only) {
-  std::string_view section;
+  std::vector<std::string_view> sections;
   for (const Parameter& key : keys()) {
     const auto of = section_of(key.key);
     const bool elsewhere = std::ranges::any_of(commands(), [&](const Command& c) { return c.section == of; });
     if (only.empty() ? elsewhere : of != only) continue;
-    if (const auto now = section_of(key.key); now != section) {
-      section = now;
-      fmt::print("\n[{}]\n", section);
-    }
-    const auto value = key.otherwise.empty() ? fallback_of(key) : key.otherwise;
-    fmt::print("  {:<22} {}{} ({}{})\n", key.key, key.help, key.unit.empty() ? "" : fmt::format(" [{}]", key.unit),
-               value, values_of(key));
+    if (std::ranges::find(sections, of) == sections.end()) sections.push_back(of);
   }
+  for (const std::string_view section : sections) {
+    const auto purpose = std::ranges::find(purposes, section, &std::pair<std::string_view, const char*>::first);
+    fmt::print("\n[{}]{}\n", section, purpose == std::end(purposes) ? "" : fmt::format("  {}", purpose->second));
+    std::vector<std::string> readers{""};
+    for (const Parameter& key : keys())
+      if (const std::string reader = reader_of(key).first;
+          section_of(key.key) == section && std::ranges::find(readers, reader) == readers.end())
+        readers.push_back(reader);
+    for (const std::string& reader : readers) {
+      if (!reader.empty()) print_hanging("  with ", reader + ":", 7);
+      for (const Parameter& key : keys())
+        if (const auto [of, help] = reader_of(key); section_of(key.key) == section && of == reader)
+          print_key(key, help);
+    }
+  }
+}
+
+/// `delf help KEY`: the key, and each of its values on a line of its own.
+void print_values(const Parameter& key) {
+  print_hanging(
+      "", fmt::format("{}{}{}", key.help, key.unit.empty() ? "" : fmt::format(" [{}]", key.unit), values_of(key)), 0);
+  const std::string value = key.otherwise.empty() ? fallback_of(key) : key.otherwise;
+  if (!value.empty()) print_hanging("If it is not given: ", value, 4);
+  for (const std::string& choice : key.choices) fmt::print("  {}\n", choice);
 }
 
 constexpr const char* lagrangians =
@@ -115,8 +205,6 @@ friction -g phi_t follows; a drive f(t) is a term f(t)*phi; phi_t*phi is a diver
 
 theory.angles = phi says that values 2 pi apart are the same state: sections, measures and figures count modulo 2 pi then.
 
-theory.angles = phi says that values 2 pi apart are the same state: sections, measures and figures count modulo 2 pi then.
-
 The states noise and file work for every theory. From C++:
 
   auto scheme = delf::Scheme{delf::hexagon, delf::expression("0.5*phi_t^2 - 0.5*phi_x^2 - 0.25*(phi^2 - 1)^2")};
@@ -137,8 +225,8 @@ constexpr const char* measures_head =
 )page";
 constexpr const char* measures_foot = R"page(
 [level]: may be left out. All are of the first field. Extremes, crossings and frequencies see all steps, the others the
-recorded rows (output.every); without an answer there is null. Their numbers, and what is made of them, are sums, products, powers and functions as in `delf help
-lagrangians`, of theory.NAME as NAME, L, pi, and t, the time of the last row.
+recorded rows (output.every); without an answer there is null. Their numbers, and what is made of them, are sums,
+products, powers and functions as in `delf help lagrangians`, of theory.NAME as NAME, L, pi, and t, the time of the last row.
 )page";
 
 // The measures, from the table of measurements.
@@ -161,23 +249,38 @@ constexpr Topic topics[] = {{"lagrangians", "a theory of your own, as text", [] 
 
 std::string usage() {
   std::string text = "delf: a discrete multisymplectic lattice engine\n\n";
-  for (const Command& c : commands()) text += fmt::format("  {:<52} {}\n", c.usage, c.summary);
-  for (const Topic& t : topics) text += fmt::format("  {:<52} {}\n", fmt::format("delf help {}", t.name), t.summary);
+  constexpr std::size_t column = 55;
+  // A summary begins below a usage that is too long, and goes on in its column.
+  const auto add = [&](const std::string& words, const std::string& summary) {
+    std::string before = fmt::format("  {:<{}}", words, column - 2);
+    if (words.size() + 3 > column) before = "  " + words + "\n" + std::string(column, ' ');
+    for (const std::string& line : wrapped(summary, width - column)) {
+      text += before + line + "\n";
+      before.assign(column, ' ');
+    }
+  };
+  for (const Command& c : commands()) add(c.usage, c.summary);
+  for (const Topic& t : topics) add(fmt::format("delf help {}", t.name), t.summary);
   return text + "  delf --version\n\nSCENE is a file, or the name of a shipped scene: `delf run collision`.\n";
 }
 
 ExitCode help(const std::string& name) {
   if (name.empty()) {
-    fmt::print("{}`delf help run` lists the keys of a scene.\n", usage());
+    fmt::print("{}`delf help run` lists the keys of a scene, and `delf help KEY` the values of one.\n", usage());
     return ExitCode::done;
   }
   for (const Topic& topic : topics)
     if (name == topic.name) {
-      fmt::print("{}", topic.text());
+      print_filled(topic.text());
       return ExitCode::done;
     }
+  if (const Parameter* key = find_key(name)) {
+    print_values(*key);
+    return ExitCode::done;
+  }
   const Command& command = find_command(name);
-  fmt::print("{}\n\n{}\n", command.usage, command.details);
+  fmt::print("{}\n\n", command.usage);
+  print_filled(command.details);
   if (command.reads_scene) print_keys(command.section);
   return ExitCode::done;
 }

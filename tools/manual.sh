@@ -13,7 +13,7 @@ delf \- a discrete multisymplectic lattice engine
 .SH SYNOPSIS
 .nf
 END
-"$delf" help | sed -n 's/^  \(delf .*\)/\1/p' | plain
+"$delf" help | sed -n '/^  delf /,/^$/s/^  //p' | plain
 printf '.fi\n'
 for command in $("$delf" help | sed -n 's/^  delf \([a-z]*\) .*/\1/p' | awk '!seen[$0]++') ; do
   [ "$command" = help ] && continue

@@ -65,6 +65,11 @@ Resumed newest_checkpoint(const fs::path& folder) {
     }
   }
   if (!why.empty()) throw BadScene(why + "; begin the run anew");
+  if (std::error_code none; fs::exists(folder / "summary.json", none))
+    throw BadScene(
+        fmt::format("{}: there is no checkpoint to resume from: the run has ended without one, as "
+                    "those without time or with output.checkpoint = 0 do; run {} anew",
+                    folder.string(), (folder / "scene.ini").string()));
   throw BadScene(
       fmt::format("{}: there is no checkpoint to resume from; name the folder of a run, and see "
                   "output.checkpoint",

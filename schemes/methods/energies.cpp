@@ -51,10 +51,10 @@ class MomentaBelow {
 extern const EnergyEntry rectangle_energy, midway_energy, quadratic_invariant, vu_quoc_li_energy, guo_energy,
     composition_energy;
 
-const EnergyEntry rectangle_energy{"energy", energy_formula, "Marsden-Patrick-Shkoller, footnote 4, of any density",
-                                   ""};
+const EnergyEntry rectangle_energy{"jets of the symmetric rectangle", energy_formula,
+                                   "Marsden-Patrick-Shkoller, footnote 4, of any density", ""};
 const EnergyEntry midway_energy{
-    "energy of a point",
+    "the midpoint of two rows",
     "q_t ∂ℓ/∂q_t − ℓ, midway between the last two rows, q_t = (q⁺ − q)/h, whatever the scheme; order 2 in h",
     "the same on one site", ""};
 const EnergyEntry hamiltonian_of_row{

@@ -183,8 +183,10 @@ TEST_CASE("what they declare is listed, explained, checked and warned of like th
   for (const char* name : {"own-quartic", "theory.quartic", "own-cells", "own-bump"}) CHECK(contains(listed.out, name));
   const Ran help = own_program(folder, {"help", "run"});
   CHECK(contains(help.out, "theory.quartic         g (0.5; at least 0)"));
-  CHECK(contains(help.out, "scheme.cells           method = own-cells: the cells (rectangle; one of rectangle, triangle)"));
-  CHECK(contains(help.out, "initial.height         state = own-bump: A (0.25)"));
+  CHECK(contains(
+      help.out,
+      "with scheme.method = own-cells:\n  scheme.cells           the cells (rectangle; one of rectangle, triangle)"));
+  CHECK(contains(help.out, "with initial.state = own-bump:\n  initial.height         A (0.25)"));
 
   const auto refused = [&](const std::string& key, const std::string& why) {
     const Ran ran = own_program(folder, {"run", own_scene(folder), key});

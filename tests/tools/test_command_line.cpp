@@ -4,6 +4,7 @@
 #include "tests/tools/program.hpp"
 #include "tests/tools/refused.hpp"
 #include "tools/report/failure.hpp"
+#include "tools/report/text_columns.hpp"
 #include "tools/scene/keys.hpp"
 
 using namespace delf::testing;
@@ -108,4 +109,47 @@ TEST_CASE("lines of progress are no complaints, and every other line is one") {
   CHECK(complaints({0, "", "22 %: step 4 of 18 after 14 s, 48 s left\n"}) == "");
   CHECK(complaints({0, "", "warning: 22 %: step 4 of 18\n9 %: run 1 of 9 after 11 s, 2 min left\n"}) ==
         "warning: 22 %: step 4 of 18\n");
+}
+
+TEST_CASE("help fits on a hundred columns, with keys in groups and the values of each") {
+  const Folder folder;
+  for (const char* of : {"run", "resume", "plan", "verify", "sweep", "compare", "convergence", "workprecision",
+                         "stability", "lagrangians", "measures", ""})
+    for (const std::string& line : lines(delf_program(folder, std::string("help ") + of).out)) {
+      INFO(line);
+      CHECK(delf::columns_of(line) <= 100);
+    }
+  const std::string run = delf_program(folder, "help run").out;
+  CHECK(contains(run, "[scheme]  the method, and how it solves a step"));
+  CHECK(run.find("scheme.tolerance") < run.find("  with scheme.method = composition:"));
+  CHECK(run.find("  with scheme.method = composition:") < run.find("scheme.splitting"));
+  const std::string space = delf_program(folder, "help lattice.space").out;
+  CHECK(contains(space, "\n  circle\n  interval\n  point\n  complex\n"));
+  CHECK(contains(delf_program(folder, "help output.figures").out, "\n  on\n  off\n"));
+}
+
+TEST_CASE("bash completes commands, scenes, keys, their values and files of rows") {
+  const Folder folder;
+  folder.write("rows.csv", "1\n");
+  const std::string script = std::filesystem::path(scenes_folder()).parent_path() / "completion/delf.bash";
+  // breaks: of COMP_WORDBREAKS, which the script leaves as they are
+  const auto complete = [&](const std::string& line, const std::string& words, bool breaks) {
+    const std::string set = breaks ? "COMP_WORDBREAKS=$' \\t\\n=:'" : "COMP_WORDBREAKS=$' \\t\\n'";
+    folder.write("complete.sh",
+                 set + "; before=$COMP_WORDBREAKS; compopt() { :; }\n. '" + script + "'\n" +
+                     "[ \"$before\" = \"$COMP_WORDBREAKS\" ] || echo changed\n" + "delf() { '" + program_path() +
+                     "' \"$@\"; }\nCOMP_LINE='" + line + "'; COMP_POINT=${#COMP_LINE}\n" + "COMP_WORDS=(" + words +
+                     "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n" + "_delf; printf '%s\\n' \"${COMPREPLY[@]}\"\n");
+    return shell(folder, "bash complete.sh").out;
+  };
+  CHECK(complete("delf com", "delf com", true) == "compare\n");
+  CHECK(contains(complete("delf run col", "delf run col", true), "collision\n"));
+  CHECK(complete("delf run kink --lattice.cour", "delf run kink --lattice.cour", true) == "--lattice.courant=\n");
+  CHECK(complete("delf run kink --lattice.space=c", "delf run kink --lattice.space = c", true) == "circle\ncomplex\n");
+  CHECK(complete("delf run kink --lattice.space=i", "delf run kink --lattice.space=i", false) ==
+        "--lattice.space=interval\n");
+  CHECK(complete("delf compare kink --lattice.stencil=triangle,hex", "delf compare kink --lattice.stencil=triangle,hex",
+                 false) == "--lattice.stencil=triangle,hexagon\n");
+  CHECK(complete("delf verify kink --fields ro", "delf verify kink --fields ro", true) == "rows.csv\n");
+  CHECK(complete("delf verify kink --fi", "delf verify kink --fi", true) == "--fields\n");
 }

@@ -40,7 +40,10 @@ std::vector<double> at_sites_of(const Scene& scene, const std::vector<double>& r
 }
 
 QuietEnd run_quietly(const Scene& scene) {
-  if (scene.from_file()) throw BadInput("initial.file", "its rows come from a file");
+  if (scene.from_file())
+    throw scene.settings.error("initial.file",
+                               "has rows of one resolution, and finer ones are asked for; give the state as "
+                               "formulas, initial.phi and initial.phi_t, or one of `delf list states`");
   const InitialRows initial(scene);
   Simulation simulation = build(scene, initial.winding());
   Measures measures(scene, initial.winding(), simulation);

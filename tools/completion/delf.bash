@@ -1,12 +1,43 @@
 # SPDX-License-Identifier: MIT
-# Completion of delf for bash: commands, scenes and keys, as the program itself lists them.
+# Completion of delf for bash: commands, scenes, keys and their values, as the program itself lists them.
+
+# The word before the cursor, --KEY=VALUE as one, whether COMP_WORDBREAKS breaks it at = or not.
+_delf_word() {
+  local before=${COMP_LINE:0:COMP_POINT}
+  printf '%s' "${before##*[[:space:]]}"
+}
+
 _delf() {
-  local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]-}
-  local program=${COMP_WORDS[0]}
+  local word previous=${COMP_WORDS[COMP_CWORD-1]-} command=${COMP_WORDS[1]-} program=${COMP_WORDS[0]}
+  local begin rest
+  word=$(_delf_word)
+  COMPREPLY=()
   if ((COMP_CWORD == 1)); then
     mapfile -t COMPREPLY < <(compgen -W "$("$program" help 2>/dev/null | sed -n 's/^  delf \([a-z]*\) .*/\1/p' | sort -u)" -- "$word")
     return
   fi
+  if [[ $word == --*=* ]]; then  # a value; of several, the last
+    compopt +o filenames 2>/dev/null
+    rest=${word#*=}
+    begin=
+    [[ $rest == *,* ]] && begin=${rest%,*},
+    rest=${rest##*,}
+    [[ $COMP_WORDBREAKS == *=* ]] || begin=${word%%=*}=$begin
+    case ${word%%=*} in
+      --fields | --nearby | --initial.file | --lattice.mesh | --sweep.settings)
+        mapfile -t COMPREPLY < <(compgen -f -P "$begin" -- "$rest") ;;
+      --out) mapfile -t COMPREPLY < <(compgen -d -P "$begin" -- "$rest") ;;
+      *)
+        local key=${word%%=*}
+        mapfile -t COMPREPLY < <(compgen -P "$begin" -W "$("$program" help "${key#--}" 2>/dev/null |
+          sed -n 's/^  \([^ ]*\)$/\1/p')" -- "$rest") ;;
+    esac
+    return
+  fi
+  case $previous in
+    --fields | --nearby) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    --out) mapfile -t COMPREPLY < <(compgen -d -- "$word"); return ;;
+  esac
   case $command in
     help) mapfile -t COMPREPLY < <(compgen -W "$("$program" help 2>/dev/null | sed -n 's/^  delf \([a-z]*\) .*/\1/p') lagrangians measures" -- "$word") ;;
     list) mapfile -t COMPREPLY < <(compgen -W "theories stencils schemes states scenes" -- "$word") ;;
@@ -20,8 +51,12 @@ _delf() {
     *)
       if [[ $word == -* ]]; then
         # of the command and of every run
-        mapfile -t COMPREPLY < <(compgen -W "--out $({ "$program" help run; "$program" help "$command"; } 2>/dev/null |
-          sed -n 's/^  \([a-z]*\.[a-z_]*\) .*/--\1=/p')" -- "$word")
+        local options=--out
+        [[ $command == verify ]] && options+=' --fields --dataset --nearby'
+        [[ $command == plan ]] && options='--latex'
+        [[ $command == run ]] && options+=' --overwrite'
+        mapfile -t COMPREPLY < <(compgen -W "$options $({ "$program" help run; "$program" help "$command"; } 2>/dev/null |
+          sed -n 's/^  \([a-z]*\.[a-z_]*\) .*/--\1=/p' | sort -u)" -- "$word")
       else
         mapfile -t COMPREPLY < <(compgen -W "$("$program" list scenes 2>/dev/null | sed -n 's/^  \([a-z0-9-]*\) .*/\1/p')" -- "$word"
           compgen -f -- "$word")
@@ -30,6 +65,4 @@ _delf() {
   esac
   [[ ${COMPREPLY[0]-} == *= ]] && compopt -o nospace
 }
-# A key and its value are one word.
-COMP_WORDBREAKS=${COMP_WORDBREAKS//=/}
 complete -o filenames -F _delf delf

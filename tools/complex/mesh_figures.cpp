@@ -115,7 +115,7 @@ std::string spacetime(const ComplexScene& c, std::span<const double> values, std
                       const fs::path& scratch) {
   if (c.cells() > most_cells) return {};
   const StencilList& list = *c.stencils;
-  constexpr int most_with_edges = 3000;
+  constexpr int most_with_edges = 6000;
   std::string table;
   std::vector<double> shown(values.begin(), values.end());
   for (const StencilList::Entry& e : list.stencils) {
@@ -148,7 +148,7 @@ std::string spacetime(const ComplexScene& c, std::span<const double> values, std
              "splot '{}' using 1:2:3 with "
              "pm3d\n",
              values.empty() ? "c1" : "mean",
-             c.cells() <= most_with_edges ? "set pm3d border lc rgb '#ffffff' lw 0.3\n" : "",
+             c.cells() <= most_with_edges ? "set pm3d border lc rgb '#808080' lw 0.3\n" : "",
              nice_step(scale.most - scale.least, 8), colour_bar(values.empty() ? "level" : c.fields.front().name),
              name);
 }

@@ -9,6 +9,7 @@
 
 #include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "tools/files/frames_file.hpp"
 #include "tools/files/text_file.hpp"
 
 namespace delf {
@@ -59,7 +60,9 @@ void MeshFiles::visit(SavedState& state) { state("times of frames", times_); }
 
 void MeshFiles::close() {
   file_->close();
-  if (has_xdmf(scene_)) write_text_file(folder_ / "fields.xdmf", xdmf());
+  if (!has_xdmf(scene_)) return;
+  write_frames_file(folder_, names_of(scene_).of[Role::field], times_.size(), at(scene_.sites()));
+  write_text_file(folder_ / "fields.xdmf", xdmf());
 }
 
 std::string MeshFiles::xdmf() const {
@@ -110,11 +113,9 @@ std::string MeshFiles::xdmf() const {
         times_[f], topology, coordinates == 2 ? "XY" : "XYZ", n, coordinates);
     for (int a = 0; a < d; ++a)
       text += fmt::format(
-          "<Attribute Name=\"{}\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\" Dimensions=\"{}\">"
-          "<DataItem Dimensions=\"3 3\" Format=\"XML\">{} 0 {} 1 1 1 1 {} 1</DataItem>"
-          "<DataItem Dimensions=\"{} {} {}\" Precision=\"8\" "
-          "Format=\"HDF\">fields.h5:/field</DataItem></DataItem></Attribute>\n",
-          scene_.fields[a].name, n, f, a, n, times_.size(), n, d);
+          "<Attribute Name=\"{0}\" Center=\"Node\"><DataItem Dimensions=\"{1}\" NumberType=\"Float\" "
+          "Precision=\"8\" Format=\"HDF\">{2}:/{0}/{3}</DataItem></Attribute>\n",
+          scene_.fields[a].name, n, frames_file_name, f);
     text += "</Grid>\n";
   }
   return text + "</Grid></Domain></Xdmf>\n";

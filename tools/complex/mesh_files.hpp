@@ -14,7 +14,7 @@ class SavedState;
 /// Whether there is a fields.xdmf: XDMF takes two or three coordinates, of space, or t, x and y of a finite complex.
 bool has_xdmf(const ComplexScene&);
 
-/// fields.h5 of a scene on a mesh, and fields.xdmf beside it, which ParaView opens.
+/// fields.h5 of a scene on a mesh, and fields.xdmf and frames.h5 beside it, which ParaView opens.
 class MeshFiles {
  public:
   MeshFiles(const ComplexScene&, const std::filesystem::path& folder, std::int64_t frames, bool node_times = false,

@@ -30,7 +30,8 @@ std::string site_paths(const FigureSource& source, int frames, const std::filesy
     table += "\n";
   }
   write_text_file(scratch / "paths", table);
-  return ", 'paths' using 1:2 with lines lw 0.6 lc rgb '#80ffffff'";
+  // A light line on a dark one is seen on any colour of the map.
+  return ", 'paths' using 1:2 with lines lw 1.5 lc rgb '#90202020', 'paths' using 1:2 with lines lw 0.6 lc rgb '#40ffffff'";
 }
 
 }  // namespace

@@ -108,6 +108,9 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
           fmt::format("{}: waveforms of {}", source.scene, components.size() > 1 ? "the fields" : "φ"),
           fmt::format("{}, {}{}{}", source.theory, source.scheme, turned ? "; multiples of 2π are subtracted" : "",
                       exact_curves > 0 ? "; grey: exact" : "")) +
+      (exact_curves > 0 ? "if (!titles) set label 105 'grey: exact' at screen 0.97,0.975 right font ',11' "
+                          "textcolor rgb '#666666'\n"
+                        : "") +
       fmt::format(
           "set multiplot layout {},{} margins screen 0.105,0.97,0.125,(top-0.035) spacing screen 0.03,0.085\n"
           "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics {}\n",
@@ -117,9 +120,8 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
     const bool left = p % columns == 0, bottom = p + columns >= panels;
     body += fmt::format("set format y '{}'\nset format x '{}'\nset ylabel '{}'\nset xlabel '{}'\n", left ? "%h" : "",
                         bottom ? "%h" : "",
-                        left ? (components.size() > 1 ? (source.angle ? "fields / 2π" : "fields")
-                                : source.angle        ? "φ / 2π"
-                                                      : "φ")
+                        left ? std::string(components.size() > 1 ? "fields" : "φ") + (source.angle ? " / 2π" : "") +
+                                   (turned ? ", less whole turns" : "")
                              : "",
                         bottom ? "space x" : "");
     body += fmt::format("set label 1 't = {:.4g}' at graph 0,1 left offset 0,0.7 textcolor rgb '#333333'\n",

@@ -15,6 +15,7 @@
 
 #include "lattice/index.hpp"
 #include "tools/files/mark_closed.hpp"
+#include "tools/files/named_axes.hpp"
 #include "tools/files/open_to_read.hpp"
 #include "tools/report/failure.hpp"
 
@@ -124,12 +125,12 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   const Rows& field = rows_[Role::field];
   if (names.mesh) mesh_ = rows("mesh", {sites});
   if (mesh.node_times) node_times_ = rows("node_time", {sites});
+  Hdf5Handle cells;
   if (!mesh.cells.empty()) {
     const auto corners = static_cast<hsize_t>(mesh.corners);
     const std::array<hsize_t, 2> shape{mesh.cells.size() / corners, corners};
     const Hdf5Handle of_cells(H5Screate_simple(2, shape.data(), nullptr), H5Sclose);
-    const Hdf5Handle cells(H5Dcreate2(file_, "cells", H5T_STD_I32LE, of_cells, H5P_DEFAULT, properties, H5P_DEFAULT),
-                           H5Dclose);
+    cells = {H5Dcreate2(file_, "cells", H5T_STD_I32LE, of_cells, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose};
     require(cells && H5Dwrite(cells, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, mesh.cells.data()) >= 0,
             "cannot be written");
   }
@@ -154,6 +155,7 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
     describe(datasets_.back(), components);
     require(datasets_.back().dataset && write_text(datasets_.back().dataset, "meaning", meaning), "cannot be written");
   }
+  name_axes(positions, cells, mesh);
   // Every write leaves, from here on (single writer, multiple readers), a file that can be read whenever a run ends.
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0 && H5Fstart_swmr_write(file_) >= 0, "cannot be written");
   times_.reserve(frames_per_block_);
@@ -168,6 +170,36 @@ FieldsFile::FieldsFile(const std::filesystem::path& path, std::span<const double
   std::filesystem::rename(made, path, error);
   require(!error, "cannot be replaced");
   written_to_ = path;
+}
+
+/// frames × sites × components: /time and, of a lattice, /space are the scales of the first two axes.
+void FieldsFile::name_axes(hid_t positions, hid_t cells, const MeshOfFile& mesh) {
+  const auto attach = [&](hid_t dataset, unsigned axis, hid_t scale, const char* label) {
+    require(name_axis(dataset, axis, scale, label), "cannot be written");
+  };
+  require(make_scale(time_, "time"), "cannot be written");
+  const bool is_mesh = !mesh.cells.empty();
+  const char* const of_sites = is_mesh ? "site" : "space";
+  Hdf5Handle sites;
+  if (is_mesh) {
+    sites = scale_without_values(file_, of_sites, sites_);
+    const auto corners = static_cast<hsize_t>(mesh.corners);
+    attach(positions, 0, sites, of_sites);
+    attach(positions, 1, scale_without_values(file_, "coordinate", static_cast<hsize_t>(mesh.coordinates)),
+           "coordinate");
+    attach(cells, 0, scale_without_values(file_, "cell", mesh.cells.size() / corners), "cell");
+    attach(cells, 1, scale_without_values(file_, "corner", corners), "corner");
+  } else {
+    require(make_scale(positions, of_sites), "cannot be written");
+  }
+  for (const Rows* rows : all_rows()) {
+    if (!rows->dataset) continue;
+    attach(rows->dataset, 0, time_, "time");
+    attach(rows->dataset, 1, is_mesh ? static_cast<hid_t>(sites) : positions, of_sites);
+    if (rows->shape.size() < 2) continue;
+    const std::string components = rows->name + "_component";
+    attach(rows->dataset, 2, scale_without_values(file_, components.c_str(), rows->shape[1]), components.c_str());
+  }
 }
 
 void FieldsFile::copy_frames(const std::filesystem::path& from, const WrittenPart& kept) {

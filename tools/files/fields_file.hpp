@@ -34,6 +34,7 @@ struct MeshOfFile {
 ///
 ///     /       attributes scene (the resolved scene), version, winding
 ///
+/// Axes have names by dimension scales: time, space (site of a mesh) and NAME_component.
 /// With `kept`, a file of that name is gone on with behind its first frames: they are copied, and the copy takes its place.
 /// Throws BadScene where they cannot be read or are others, and leaves the file as it is.
 /// Rows are written in blocks, and each block is flushed: what has been written stays readable. Throws SystemFailure, and
@@ -59,6 +60,7 @@ class FieldsFile {
     std::string name = {};
   };
   Rows rows(const char* name, std::vector<hsize_t> shape) const;
+  void name_axes(hid_t positions, hid_t cells, const MeshOfFile&);
   bool has_room();
   void write_block();
   bool close_all();

@@ -48,6 +48,23 @@ std::optional<std::array<hsize_t, 3>> extent_of(hid_t dataset) {
   return extent;
 }
 
+// "name another by --dataset u (with --fields), or the fields.h5 of a run": of what the file has at its root.
+std::string other_datasets(hid_t file) {
+  std::string names;
+  const auto add = [](hid_t from, const char* name, const H5L_info_t*, void* to) -> herr_t {
+    const Hdf5Handle dataset(H5Dopen2(from, name, H5P_DEFAULT), H5Dclose);
+    if (dataset && rank_of(dataset) > 1 && rank_of(dataset) < 4) {
+      std::string& all = *static_cast<std::string*>(to);
+      all += (all.empty() ? "" : ", ") + std::string(name);
+    }
+    return 0;
+  };
+  H5Literate(file, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
+  return names.empty()
+             ? "name the fields.h5 of a run"
+             : fmt::format("name another data set of --fields by --dataset {}, or the fields.h5 of a run", names);
+}
+
 bool fits(const std::array<hsize_t, 3>& extent) {
   constexpr hsize_t most = std::numeric_limits<int>::max();
   return extent[2] >= 1 && extent[0] <= most && extent[1] <= most && extent[2] <= most;
@@ -84,9 +101,9 @@ void FieldsReader::open(const std::filesystem::path& path) {
   for (const Role role : all_roles) {
     const bool needed = role == Role::field;
     Hdf5Handle dataset = open_dataset(file_, to_string(role));
-    if (needed && !dataset) throw bad_file("has no dataset /field; name the fields.h5 of a run");
+    if (needed && !dataset) throw bad_file("has no dataset /field; " + other_datasets(file_));
     const auto extent = extent_of(dataset);
-    if (needed && !extent) throw bad_file("/field is not frames x sites x components; name the fields.h5 of a run");
+    if (needed && !extent) throw bad_file("/field is not frames x sites x components; " + other_datasets(file_));
     if (needed && !fits(*extent))
       throw bad_file(
           fmt::format("/field is {} x {} x {}; name the fields.h5 of a run", (*extent)[0], (*extent)[1], (*extent)[2]));

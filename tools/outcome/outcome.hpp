@@ -20,7 +20,8 @@ class SavedState;
 struct Conserved {
   std::string name;
   double initial, final;
-  double error_max;  ///< the largest |J − J_0|, relative to Σ |terms of J|: the sum itself may be zero
+  double error_max;       ///< the largest |J − J_0|, relative to Σ |terms of J|: the sum itself may be zero
+  bool at_walls = false;  ///< fixed walls are no symmetry of it, and take it
 
   /// At a further row; what is not a number, as at row 0 of a start from that row alone, tells nothing.
   void take(double J, double terms);
@@ -45,13 +46,16 @@ struct Outcome {
   std::int64_t records = 0;
   std::int64_t updates = 0;  ///< of asynchronous cells
   double time = 0;
-  double seconds = 0;  ///< of the steps alone
+  double seconds = 0;                ///< of the steps alone
   double shortest = 0, longest = 0;  ///< step, where steps have lengths of their own
   double iterations_mean = 0, residual_max = 0;
   int iterations_max = 0;
   bool iterates = false;                        ///< a step is not one solve
   std::map<Continued, std::int64_t> continued;  ///< steps that were solved by continuation, by the reason
   double energy_initial = unknown, energy_final = unknown, energy_error_max = unknown;
+  std::string energy_of;         ///< what observes the energy of a row, in words; empty: not said
+  bool reads_time = false;       ///< the density changes its energy
+  double energy_work = unknown;  ///< by this up to the last row, where records tell
   double momentum_initial = unknown, momentum_final = unknown, charge_final = unknown;
   double constraint_max = unknown;  ///< the largest |G|, if the scheme has constraints
   std::string maxima_over;          ///< the rows that these maxima, and those below, are over, in words

@@ -32,6 +32,23 @@ Subject subject_of(const Problem& p) {
   return subject;
 }
 
+/// The energy of the last row, its observer, and what it is compared with.
+std::string energy_in_words(const Outcome& o) {
+  std::string words = fmt::format("{:.10g}", o.energy_final);
+  if (!o.energy_of.empty()) words += fmt::format(" of row {}, by {}", o.steps, o.energy_of);
+  // There is no error relative to an energy of zero, and none against row 0 where the density does work.
+  if (o.reads_time)
+    return words + "; the density reads t" +
+           (std::isfinite(o.energy_work) ? fmt::format(", and its work is {:.4g} of that", o.energy_work)
+                                         : ", whose work more records would tell");
+  if (!std::isfinite(o.energy_error_max)) return words;
+  words += fmt::format("; relative error {:.3g} at most", o.energy_error_max);
+  for (const Conserved& c : o.conserved)
+    if (c.name.starts_with("energy_own") && c.error_max < 0.1 * o.energy_error_max)
+      words += fmt::format(", and of the scheme's own, energy_own, {:.3g}", c.error_max);
+  return words;
+}
+
 std::string report(const Subject& subject, const Scene& scene, const Outcome& o) {
   const Problem& p = scene.problem;
   std::string text =
@@ -61,8 +78,7 @@ std::string report(const Subject& subject, const Scene& scene, const Outcome& o)
                            ? fmt::to_string(o.iterations_max)
                            : fmt::format("{:.3g} a step, {} at most", o.iterations_mean, o.iterations_max));
   for (const auto& [why, steps] : o.continued)
-    line("continued",
-         fmt::format("{} of {} steps took Newton's method: {}", steps, o.steps_taken, in_words(why)));
+    line("continued", fmt::format("{} of {} steps took Newton's method: {}", steps, o.steps_taken, in_words(why)));
   // Two measures: of the equations, and of the field.
   line("residual",
        std::isnan(o.residual_max)
@@ -71,13 +87,11 @@ std::string report(const Subject& subject, const Scene& scene, const Outcome& o)
                  "{:.2g} at most, relative to the terms of the equations{}", o.residual_max,
                  o.iterates ? fmt::format("; scheme.tolerance = {:.3g} is of the last change of the field", p.tolerance)
                             : ""));
-  if (std::isfinite(o.energy_final))
-    line("energy", fmt::format("{:.10g}{}", o.energy_final,
-                               std::isfinite(o.energy_error_max)  // there is none relative to an energy of zero
-                                   ? fmt::format("; relative error {:.3g} at most", o.energy_error_max)
-                                   : ""));
+  if (std::isfinite(o.energy_final)) line("energy", energy_in_words(o));
   for (const Conserved& c : o.conserved)
-    line("conserved", fmt::format("{} = {:.10g}; error {:.3g} at most", c.name, c.final, c.error_max));
+    if (c.at_walls) line("at walls", fmt::format("{} = {:.10g}; fixed walls take it", c.name, c.final));
+    else if (std::isfinite(c.final))
+      line("conserved", fmt::format("{} = {:.10g}; error {:.3g} at most", c.name, c.final, c.error_max));
   if (std::isfinite(o.constraint_max)) line("constraint", fmt::format("{:.3g} at most", o.constraint_max));
   if (!o.maxima_over.empty()) line("maxima", "of " + o.maxima_over);
   if (std::isfinite(o.error_linf))

@@ -52,6 +52,8 @@ std::string summary_json(const Subject& subject, const Scene& scene, const Outco
   json["energy_initial"] = o.energy_initial;
   json["energy_final"] = o.energy_final;
   json["energy_error_max"] = o.energy_error_max;
+  json["energy_of"] = text_or_null(o.energy_of);
+  json["energy_work"] = o.energy_work;
   json["maxima_over"] = text_or_null(o.maxima_over);
   json["momentum_initial"] = o.momentum_initial;
   json["momentum_final"] = o.momentum_final;
@@ -62,7 +64,11 @@ std::string summary_json(const Subject& subject, const Scene& scene, const Outco
     json[monitors[m].name] = m < o.of_method.size() ? o.of_method[m] : Outcome::unknown;
   auto& conserved = json["conserved"] = Json::array();
   for (const Conserved& c : o.conserved)
-    conserved.push_back({{"name", c.name}, {"initial", c.initial}, {"final", c.final}, {"error_max", c.error_max}});
+    conserved.push_back({{"name", c.name},
+                         {"initial", c.initial},
+                         {"final", c.final},
+                         {"error_max", c.error_max},
+                         {"at_walls", c.at_walls}});
   json["error_linf"] = o.error_linf;
   json["error_l2"] = o.error_l2;
   auto& measures = json["measures"] = Json::object();

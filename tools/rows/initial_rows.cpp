@@ -19,6 +19,25 @@
 
 namespace delf {
 
+namespace {
+
+/// Throws BadScene if the field, or its rate, is a formula of the scene, which has no value there.
+void require_formula_has_value(const Scene& scene, std::size_t field, bool rate, double t, const Lattice& lattice,
+                               std::size_t site) {
+  if (field >= scene.initial.fields.size()) return;
+  const std::string& name = scene.initial.fields[field];
+  for (const std::string& key : {"exact." + name, "initial." + name + (rate ? "_t" : "")})
+    if (scene.settings.find(key))
+      throw scene.settings.error(
+          key,
+          fmt::format("has no finite value{} at t = {:.6g}, x = {:.6g} (site {}); write it so that it has one there, "
+                      "such as sin(x + 1e-9)/(x + 1e-9) for sin(x)/x",
+                      rate && key.starts_with("exact") ? ", or its rate none," : "", t,
+                      lattice.position(static_cast<int>(site)), site));
+}
+
+}  // namespace
+
 InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
   const Settings& settings = scene.settings;
   try {
@@ -126,6 +145,10 @@ std::vector<double> InitialRows::row0() const {
 std::vector<double> InitialRows::values(Writer write, double time, const Lattice& lattice) const {
   std::vector<double> out(at(lattice.sites()) * at(state_->components()));
   (state_.get()->*write)(time, lattice, out);
+  const std::size_t d = at(state_->components());
+  for (std::size_t n = 0; n < out.size(); ++n)
+    if (!std::isfinite(out[n]))
+      require_formula_has_value(scene_, n % d, write == &State::velocities, time, lattice, n / d);
   return out;
 }
 

@@ -100,6 +100,7 @@ struct Begun {
     names = RowNames(simulation);
     Problem problem = scene.problem;
     problem.winding = outcome.winding;
+    outcome.energy_of = energy_of_run(problem).name;
     own = own_energy(simulation, problem);
     if (own) names.further.emplace_back("energy_own");
     stepping.emplace(scene, initial, simulation, names, own, outcome);

@@ -31,10 +31,15 @@ std::string name_of(std::size_t place, std::size_t coordinates) {
   return coordinates == 1 ? letter : letter + std::to_string(place % coordinates + 1);
 }
 
+/// "q1 = 0, p1 > 0"
+std::string example(std::size_t coordinates) {
+  return fmt::format("{} = 0, {} > 0", name_of(0, coordinates), name_of(coordinates, coordinates));
+}
+
 SectionRequest::Term term_of(const std::string& text, std::size_t coordinates) {
   const auto refuse = [&](const std::string& why) {
     return BadInput("output.section",
-                    fmt::format("output.section: \"{}\" {}; write one like q1 = 0, p1 > 0", text, why));
+                    fmt::format("output.section: \"{}\" {}; write one like {}", text, why, example(coordinates)));
   };
   const auto at = text.find_first_of("=<>");
   if (at == std::string::npos) throw refuse("has none of =, < and >");
@@ -56,8 +61,8 @@ SectionRequest::SectionRequest(const std::string& text, int coordinates) : surfa
   if (std::ranges::count_if(terms, is_surface) != 1)
     throw BadInput("output.section",
                    fmt::format("output.section = {}: a section has one =, and conditions with < or >; "
-                               "write one like q1 = 0, p1 > 0",
-                               text));
+                               "write one like {}",
+                               text, example(delf::at(coordinates))));
   surface = *std::ranges::find_if(terms, is_surface);
   std::ranges::copy_if(terms, std::back_inserter(conditions), [&](const Term& term) { return !is_surface(term); });
 }

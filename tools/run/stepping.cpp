@@ -12,6 +12,7 @@
 #include "schemes/theories/angles.hpp"
 #include "schemes/without_value.hpp"
 #include "tools/compare/placed_row.hpp"
+#include "tools/run/without_inertia.hpp"
 
 namespace delf {
 
@@ -58,6 +59,40 @@ WatchedRows watched_rows(const Scene& scene, const Simulation& simulation) {
   const std::int64_t values = static_cast<std::int64_t>(scene.problem.lattice.sites()) *
                               static_cast<std::int64_t>(simulation.components().size());
   return {std::min(rows, most_values / values) / sums, apart * sums, scene.initial.seed};
+}
+
+/// The start, or the first step after it: where its equations cannot be solved because the density has no inertia in a
+/// direction, the failure says so.
+template <class Step>
+void first_step(const Simulation& simulation, const InitialRows& initial, const Step& step) {
+  try {
+    step();
+  } catch (const NoConvergence& failed) {
+    std::vector<std::string> fields;
+    for (const Component& c : simulation.components())
+      if (c.role == Role::field) fields.push_back(c.name);
+    const std::string why = without_inertia(simulation.theory().density(), fields, initial.row0());
+    if (why.empty()) throw;
+    throw NoConvergence(
+        fmt::format("{}: {}; add a kinetic term in that direction to it, which a constraint may hold "
+                    "at zero",
+                    failed.what(), why));
+  }
+}
+
+/// True if ξ(y) = A y + b is not zero at a wall that is fixed: what the symmetry conserves is taken up there.
+bool moves_walls(const LinearSymmetry& symmetry, const std::vector<double>& row, const Lattice& lattice) {
+  if (lattice.space() != Space::interval) return false;
+  const std::size_t d = symmetry.shift.size();
+  const auto moves = [&](Wall wall, std::size_t first) {
+    for (std::size_t a = 0; wall != Wall::natural && a < d; ++a) {
+      double xi = symmetry.shift[a];
+      for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * row[first + b];
+      if (xi != 0) return true;
+    }
+    return false;
+  };
+  return moves(lattice.left(), 0) || moves(lattice.right(), row.size() - d);
 }
 
 /// The error of a row against the exact solution, at the row's own sites, which may move.
@@ -125,14 +160,16 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
 }
 
 void Stepping::make_first_rows() {
-  initial_.start(simulation_);
+  first_step(simulation_, initial_, [&] { initial_.start(simulation_); });
   const auto monitors = this->monitors();
   outcome_.energy_initial = monitors.energy;
   outcome_.momentum_initial = monitors.momentum;
   require_energy(monitors.energy);
   for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
     const double initial = monitors.conserved[j];
-    outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0};
+    const bool at_walls = j < simulation_.symmetries().size() &&
+                          moves_walls(simulation_.symmetries()[j], initial_.row0(), scene_.problem.lattice);
+    outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0, at_walls};
   }
   if (!names_.of[Role::multiplier].empty()) outcome_.constraint_max = 0;
   for (int back = static_cast<int>(newest_row()); back >= 0; --back) {
@@ -172,7 +209,8 @@ std::optional<double> Stepping::own_length() const {
 }
 
 void Stepping::step(bool looked_at) {
-  simulation_.step(looked_at);
+  if (outcome_.steps_taken > 0) simulation_.step(looked_at);
+  else first_step(simulation_, initial_, [&] { simulation_.step(looked_at); });
   last_iterations_ = simulation_.iterations();
   if (const Continued why = simulation_.evolution().stepper().continued(); why != Continued::no)
     ++outcome_.continued[why];
@@ -358,7 +396,13 @@ void Stepping::finish() {
   measure_error();
   outcome_.measures = measures_.results();
   if (!started()) return;
+  outcome_.reads_time = warnings_.work().reads_time(), outcome_.energy_work = warnings_.work().value();
   outcome_.warnings = warnings_.of(outcome_, recorder_->energy_errors(), row_[Role::field]);
+  if (section_ && section_->points() == 0)
+    outcome_.warnings.push_back(
+        fmt::format("no row crosses output.section = {} where its conditions hold: section.csv is "
+                    "empty; choose other values, or run longer",
+                    scene_.section));
   warn_of_alias();
 }
 

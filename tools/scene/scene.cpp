@@ -167,6 +167,12 @@ std::int64_t read_steps(const Settings& settings, const Values& values, double t
   if (!(steps <= find_key("run.steps")->range.high))
     throw settings.error(
         "run.until", fmt::format("is {:.3g} steps of {:.3g}, more than can be counted; use less", steps, time_step));
+  if (steps == 0 && values.real("run.until") > 0)
+    throw settings.error("run.until", fmt::format("is less than half a step, {:.4g}: no step would be taken; lower "
+                                                  "{}, or take run.steps",
+                                                  time_step,
+                                                  values.given("lattice.time_step") ? "lattice.time_step"
+                                                                                    : "lattice.courant, which is h/k"));
   return static_cast<std::int64_t>(steps);
 }
 
@@ -290,6 +296,9 @@ Scene read_scene(Settings given) {
   if (const Setting* s = settings.find("lattice.stencil");
       s && s->line == 0 && !find_method(scene.problem.method).reads_stencil)
     warn(*s, fmt::format("scheme.method = {} has a stencil of its own", scene.problem.method));
+  if (const double end = scene.end(); std::ranges::any_of(scene.times, [&](double t) { return t > end; }))
+    warn(*settings.find("output.times"),
+         fmt::format("the run ends at t = {:.6g}, and times after it have no row; raise run.until", end));
   if (values.real("scheme.tolerance") < smallest_tolerance)
     warn(*settings.find("scheme.tolerance"),
          fmt::format("rounding allows no less than {:.2g}, which is in force; raise it", smallest_tolerance));

@@ -14,6 +14,7 @@
 #include "schemes/stepping/evolution.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/files/text_file.hpp"
+#include "tools/report/in_words.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/progress.hpp"
 #include "tools/report/seconds_since.hpp"
@@ -42,6 +43,18 @@ std::string growth_under_constraint(Problem problem) {
   }
 }
 
+/// Says on stderr what is to be done and how long that takes on a machine that does nothing else.
+void announce(std::int64_t limits, std::int64_t maps, std::size_t stress_cases, std::int64_t parts) {
+  constexpr double seconds = 0.2, worth_saying = 5;  // of a part
+  const double all = seconds * static_cast<double>(parts);
+  if (Progress::silent || all < worth_saying) return;
+  std::fputs(fmt::format("{} limits, {} maps and {} stress cases, about {}; fewer: stability.schemes, "
+                         "stability.map=off, stability.corners=none\n",
+                         limits, maps, stress_cases, duration_in_words(all))
+                 .c_str(),
+             stderr);
+}
+
 }  // namespace
 
 StabilityFindings find_stability(const StabilityRequest& request, const Problem& base) {
@@ -67,8 +80,10 @@ StabilityFindings find_stability(const StabilityRequest& request, const Problem&
   if (request.own_waves) mass_steps = {std::nullopt};
   const auto schemes = static_cast<std::int64_t>(request.schemes.size());
   constexpr std::int64_t map_parts = 8;  // a map takes as long as so many limits
-  Progress progress(schemes * static_cast<std::int64_t>(mass_steps.size()) + (request.map ? schemes * map_parts : 0) +
-                    static_cast<std::int64_t>(all.size()));
+  const std::int64_t limits = schemes * static_cast<std::int64_t>(mass_steps.size()), maps = request.map ? schemes : 0,
+                     in_all = limits + maps * map_parts + static_cast<std::int64_t>(all.size());
+  announce(limits, maps, all.size(), in_all);
+  Progress progress(in_all, "part");
   std::int64_t done = 0;
   const auto advance = [&](std::int64_t parts) { progress.at(done += parts); };
 

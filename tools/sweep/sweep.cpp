@@ -95,11 +95,13 @@ void require_rows(const fs::path& scene, const SweepOutcome& outcome) {
 }  // namespace
 
 ExitCode sweep(const fs::path& scene, const std::vector<Setting>& on_command_line,
-               const std::optional<std::string>& out) {
+               const std::optional<std::string>& out, SweepKind kind) {
   const auto begin = std::chrono::steady_clock::now();
   const Interrupt interrupt;
-  const SweepRequest request = read_sweep_request(scene, on_command_line);
-  const fs::path folder = out.value_or("results/" + scene.stem().string() + "-sweep");
+  const bool compare = kind == SweepKind::compare;
+  SweepRequest request = read_sweep_request(scene, on_command_line, compare ? "compare" : "sweep");
+  request.compare = compare;
+  const fs::path folder = out.value_or("results/" + scene.stem().string() + (compare ? "-compare" : "-sweep"));
   std::vector<SweptRun> runs;  // all are read, and what is wrong with one is found, before files are made
   for (const auto& values : request.values) {
     runs.push_back(request.run(values));

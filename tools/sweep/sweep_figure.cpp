@@ -13,6 +13,7 @@
 #include "tools/figures/figure_style.hpp"
 #include "tools/figures/gnuplot.hpp"
 #include "tools/files/text_file.hpp"
+#include "tools/sweep/compared_runs.hpp"
 #include "tools/sweep/sweep_outcome.hpp"
 
 namespace delf {
@@ -96,26 +97,64 @@ std::string map(const std::vector<std::string>& keys, const std::string& number,
                : "plot 'sweep' using 1:2:3 with points pt 7 ps 1 lc palette\n");
 }
 
+bool has_numbers(const SweepOutcome& outcome, std::size_t key) {
+  return std::ranges::all_of(outcome.values, [&](const auto& v) { return read_finite(v[key]).has_value(); });
+}
+
+// "stencil = triangle, courant = 0.5"
+std::string words_of(const SweepRequest& request, const SweepOutcome& outcome, std::size_t row,
+                     const std::vector<std::size_t>& keys) {
+  std::string words;
+  for (const std::size_t a : keys)
+    words += (words.empty() ? "" : ", ") + request.keys[a].substr(request.keys[a].find('.') + 1) + " = " +
+             outcome.values[row][a];
+  return words;
+}
+
+std::string draw_side_by_side(const SweepRequest& request, const SweepOutcome& outcome, const FigureForm& form,
+                              const std::filesystem::path& folder) {
+  constexpr std::size_t most_runs = 24;  // as many as colours and dashes distinguish
+  if (outcome.rows.size() > most_runs || request.table) return {};
+  std::vector<std::size_t> keys;
+  for (std::size_t a = 0; a < request.keys.size(); ++a) keys.push_back(a);
+  std::vector<ComparedRun> runs;
+  for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
+    const std::string words = keys.size() == 1 ? outcome.values[i][0] : words_of(request, outcome, i, keys);
+    if (!outcome.rows[i].folder.empty())
+      runs.push_back(compared_run(words, request.run(outcome.values[i]).scene, folder / outcome.rows[i].folder));
+  }
+  const std::string title = figure_title(fmt::format("{}: side by side", outcome.scene),
+                                         fmt::format("{} runs over {}", runs.size(), fmt::join(request.keys, " and ")));
+  return draw({{"sweep",
+                [&](const std::filesystem::path& scratch) {
+                  const std::string body = compared_runs_figure(runs, scratch);
+                  return body.empty() ? body : title + body;
+                }}},
+              form, folder);
+}
+
 }  // namespace
+
+bool is_side_by_side(const SweepRequest& request, const SweepOutcome& outcome) {
+  if (request.compare) return true;
+  for (std::size_t a = 0; a < request.keys.size(); ++a)
+    if (has_numbers(outcome, a)) return false;
+  return true;
+}
 
 std::string draw_sweep(const SweepRequest& request, const SweepOutcome& outcome, const FigureForm& form,
                        const std::filesystem::path& folder) {
   if (outcome.rows.size() < 2 || outcome.number.empty()) return {};
+  if (is_side_by_side(request, outcome)) return draw_side_by_side(request, outcome, form, folder);
   std::vector<std::size_t> numeric, worded;
-  for (std::size_t a = 0; a < request.keys.size(); ++a) {
-    const bool all = std::ranges::all_of(outcome.values, [&](const auto& v) { return read_finite(v[a]).has_value(); });
-    (all ? numeric : worded).push_back(a);
-  }
-  if (numeric.empty()) return {};
+  for (std::size_t a = 0; a < request.keys.size(); ++a) (has_numbers(outcome, a) ? numeric : worded).push_back(a);
   const std::size_t axes = numeric.size() == 2 && worded.empty() ? 2 : 1;
   for (std::size_t a = axes; a < numeric.size(); ++a) worded.push_back(numeric[a]);
   std::vector<Point> points;
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
     Point p{{}, {}, outcome.rows[i].number(outcome.number)};
     for (std::size_t a = 0; a < axes; ++a) p.at.push_back(*read_finite(outcome.values[i][numeric[a]]));
-    for (const std::size_t a : worded)
-      p.words += (p.words.empty() ? "" : ", ") + request.keys[a].substr(request.keys[a].find('.') + 1) + " = " +
-                 outcome.values[i][a];
+    p.words = words_of(request, outcome, i, worded);
     points.push_back(std::move(p));
   }
   std::vector<std::string> keys;

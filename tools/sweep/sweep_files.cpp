@@ -23,6 +23,17 @@ std::vector<std::string> all_numbers(const std::vector<SweepRow>& rows) {
   return all;
 }
 
+// The number of the sweep; side by side also what runs of one scene are compared by, where any of them has it.
+std::vector<std::string> shown_numbers(const SweepRequest& request, const SweepOutcome& outcome) {
+  std::vector<std::string> numbers{outcome.number};
+  if (!is_side_by_side(request, outcome)) return numbers;
+  for (const char* name : {"error_linf", "error_l2", "energy_error_max", "residual_max", "ns_per_site_step"})
+    if (name != outcome.number &&
+        std::ranges::any_of(outcome.rows, [&](const SweepRow& row) { return std::isfinite(row.number(name)); }))
+      numbers.emplace_back(name);
+  return numbers;
+}
+
 // A run that ended well may be wrong all the same, and says so in its summary.json.
 std::string warnings_in_words(const std::vector<SweepRow>& rows) {
   std::size_t runs = 0;
@@ -111,15 +122,18 @@ std::string sweep_report(const SweepRequest& request, const SweepOutcome& outcom
                                  outcome.reused > 0 ? fmt::format(", {} known from before", outcome.reused) : "",
                                  duration_in_words(outcome.seconds), request.jobs);
   if (outcome.rows.size() <= most_lines) {
+    const std::vector<std::string> numbers = shown_numbers(request, outcome);
     text += "  ";
     for (const std::string& key : request.keys) text += fmt::format("{:<22} ", key);
-    text += fmt::format("{:<16} {}\n", outcome.number, "status");
+    for (const std::string& number : numbers) text += fmt::format("{:<16} ", number);
+    text += "status\n";
     for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
       text += "  ";
       for (const std::string& value : outcome.values[i]) text += fmt::format("{:<22} ", value);
       const SweepRow& row = outcome.rows[i];
-      text += fmt::format("{:<16.8g} {}{}\n", row.number(outcome.number), row.status,
-                          row.failure.empty() ? "" : ": " + row.failure);
+      for (const std::string& number : numbers)
+        text += fmt::format("{:<16.{}g} ", row.number(number), numbers.size() == 1 ? 8 : 4);
+      text += row.status + (row.failure.empty() ? "" : ": " + row.failure) + "\n";
     }
   } else {
     std::size_t left = 10;  // enough to see what goes wrong

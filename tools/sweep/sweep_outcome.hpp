@@ -31,8 +31,11 @@ std::string usual_number(const std::vector<SweepRow>&);
 std::string sweep_csv(const SweepRequest&, const SweepOutcome&);
 std::string sweep_json(const SweepRequest&, const SweepOutcome&);
 std::string sweep_report(const SweepRequest&, const SweepOutcome&);
+/// True if energies and errors of the runs are shown side by side, over time: of `delf compare`, and where all values
+/// are words.
+bool is_side_by_side(const SweepRequest&, const SweepOutcome&);
 /// Figures over the keys with numbers for values: a line over one, for each value of a key with words; a map over two.
-/// Returns what is missing, in one line.
+/// Side by side: energies and errors over time, a line for each run. Returns what is missing, in one line.
 std::string draw_sweep(const SweepRequest&, const SweepOutcome&, const FigureForm&,
                        const std::filesystem::path& folder);
 

@@ -139,10 +139,16 @@ SweptRun SweepRequest::run(const std::vector<std::string>& of_keys) const {
   otherwise("output.figures", "off");
   otherwise("output.checkpoint", "0");  // a run that is cut short is run again
   if (table) otherwise("output.fields", "off");
-  return {scene_of(read_settings(file, settings)), of_keys};
+  SweptRun run{scene_of(read_settings(file, settings)), of_keys};
+  // Titles and formats given here are those of the sweep's own figure.
+  std::erase_if(run.scene.warnings, [](const std::string& warning) {
+    return warning.starts_with("command line: --output.titles") || warning.starts_with("command line: --output.format");
+  });
+  return run;
 }
 
-SweepRequest read_sweep_request(const fs::path& scene_file, const std::vector<Setting>& on_command_line) {
+SweepRequest read_sweep_request(const fs::path& scene_file, const std::vector<Setting>& on_command_line,
+                                std::string_view command) {
   SweepRequest request;
   request.file = scene_file;
   std::vector<std::pair<Setting, std::vector<std::string>>> several;
@@ -166,8 +172,9 @@ SweepRequest read_sweep_request(const fs::path& scene_file, const std::vector<Se
   if (values.text("sweep.bisect")) read_bisection(scene, values, request);
   if (request.keys.empty())
     throw BadScene(
-        "command line: sweep what? Give a key several values, as --initial.speed=0.1:0.5:0.1 or "
-        "--lattice.sites=101,201");
+        fmt::format("command line: {} what? Give a key several values, as --initial.speed=0.1:0.5:0.1 or "
+                    "--lattice.stencil=triangle,rectangle",
+                    command));
   request.table = values.choice("sweep.keep") == "table";
   request.resume = values.toggle("sweep.resume");
   request.number = values.text("sweep.number").value_or("");

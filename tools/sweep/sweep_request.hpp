@@ -15,7 +15,7 @@ struct SweptRun {
   std::vector<std::string> values;
 };
 
-/// A request to `delf sweep`.
+/// A request to `delf sweep`, or to `delf compare`.
 struct SweepRequest {
   std::filesystem::path file;
   std::vector<Setting> common;                   ///< on the command line, with one value; the same for all runs
@@ -24,7 +24,8 @@ struct SweepRequest {
   int jobs = 1;
   bool table = false;  ///< keep rows only
   bool resume = true;
-  std::string number;  ///< that is drawn and bisected; empty: chosen
+  bool compare = false;  ///< show the runs side by side whatever their values are
+  std::string number;    ///< that is drawn and bisected; empty: chosen
   struct Bisection {
     double low, high, accuracy;
     std::optional<double> level;
@@ -41,7 +42,8 @@ inline constexpr std::size_t most_runs = 100000;
 /// The values of `a,b,c` or `from:to:step`, as text; one value where it is neither. Throws BadScene for a bad range.
 std::vector<std::string> swept_values(const Setting&);
 
-/// Reads the command line and the keys [sweep]. Throws BadScene.
-SweepRequest read_sweep_request(const std::filesystem::path& scene, const std::vector<Setting>& on_command_line);
+/// Reads the command line and the keys [sweep]. `command` is the one that asks. Throws BadScene.
+SweepRequest read_sweep_request(const std::filesystem::path& scene, const std::vector<Setting>& on_command_line,
+                                std::string_view command = "sweep");
 
 }  // namespace delf

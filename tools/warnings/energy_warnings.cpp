@@ -10,11 +10,14 @@
 
 namespace delf {
 
-Found energy_off_start(const Outcome& outcome, double energy_of_start, double allowed, const std::string& remedy) {
+Found energy_off_start(const Outcome& outcome, double energy_of_start, double allowed, const std::string& remedy,
+                       const KnownWork& known) {
   if (energy_of_start == 0 || !std::isfinite(energy_of_start)) return {};
+  const char* const last =
+      known.work == 0 ? "the last row" : "the last row, less the work of the density, which reads t,";
   for (const auto& [which, energy] :
-       {std::pair{"row 0", outcome.energy_initial}, {"the last row", outcome.energy_final}})
-    if (!(std::abs(energy - energy_of_start) <= allowed * std::abs(energy_of_start)))
+       {std::pair{"row 0", outcome.energy_initial}, {last, outcome.energy_final - known.work}})
+    if (!(std::abs(energy - energy_of_start) <= allowed * std::abs(energy_of_start) + known.uncertainty))
       return fmt::format("the energy of {} is {:.6g}, and that of the initial state {:.6g}; {}", which, energy,
                          energy_of_start, remedy);
   return {};
@@ -41,8 +44,8 @@ Found energy_off_band(const Trace& energy_errors, const std::string& remedy) {
                          width, allowed - width / 2, interval.begin, remedy);
   // Whatever its band is, an energy that is kept comes back to where it was.
   if (const double gone = std::max(least_late, -most_late); !(gone <= 20 * one_percent))
-    return fmt::format("the energy {} {:.2g} of itself, and does not come back; {}", gone == least_late ? "gains" : "loses",
-                       gone, remedy);
+    return fmt::format("the energy {} {:.2g} of itself, and does not come back; {}",
+                       gone == least_late ? "gains" : "loses", gone, remedy);
   return {};
 }
 

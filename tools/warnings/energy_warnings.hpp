@@ -11,8 +11,14 @@ namespace delf {
 /// Why a run on a lattice or on a mesh may be wrong, from what is recorded of it: one line, with `remedy`; or nothing.
 using Found = std::optional<std::string>;
 
-/// The energy of row 0, or of the last row, is off that of the initial state by more than such a share of it.
-Found energy_off_start(const Outcome&, double energy_of_start, double allowed, const std::string& remedy);
+/// The work of a density that reads t on the field, as far as records show it.
+struct KnownWork {
+  double work = 0, uncertainty = 0;
+};
+/// The energy of row 0, or of the last row less that work, is off that of the initial state by more than such a share of
+/// it and the uncertainty of the work.
+Found energy_off_start(const Outcome&, double energy_of_start, double allowed, const std::string& remedy,
+                       const KnownWork& = {});
 /// The energy of the last tenth of the run is a fifth of itself away from row 0, all along; or it leaves the band of the
 /// first tenth. Other rows may be off its middle by five widths, though not
 /// by more than 2.5 % of the energy unless that is within two widths: a run may drift from the beginning. One percent is

@@ -18,8 +18,10 @@
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "tools/compare/refined_scene.hpp"
 #include "tools/compare/solution_error.hpp"
 #include "tools/rows/at_the_ends.hpp"
+#include "tools/rows/engine.hpp"
 #include "tools/rows/exact_solution.hpp"
 #include "tools/warnings/energy_warnings.hpp"
 #include "tools/warnings/exact_energy.hpp"
@@ -59,7 +61,10 @@ double range_of(const State& state, const Lattice& lattice, double end) {
 }  // namespace
 
 Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulation& simulation)
-    : scene_(scene), initial_(initial), simulation_(simulation) {
+    : scene_(scene),
+      initial_(initial),
+      simulation_(simulation),
+      work_(simulation, scene.problem.lattice, initial.monodromy()) {
   if (initial.state()) width_ = width_of(scene.initial, scene.problem.lattice);
   const double end = scene.end();
   has_pulse_ = initial.exact() && std::isfinite(width_);
@@ -75,6 +80,31 @@ Warnings::Warnings(const Scene& scene, const InitialRows& initial, const Simulat
 std::string Warnings::finer() const {
   return scene_.problem.lattice.space() == Space::point ? "reduce lattice.time_step"
                                                         : "raise lattice.sites, unless the lattice itself is the model";
+}
+/// The remedy for an energy that is off at row 0: finer steps where these bring it nearer. They do not where the state
+/// has a jump at the ends of the lattice.
+std::string Warnings::finer_or_why_not(const Outcome& outcome, double energy_of_start) const {
+  const State& state = *initial_.state();
+  const double off = std::abs(outcome.energy_initial - energy_of_start);
+  if (!(off > one_percent * std::abs(energy_of_start)) || scene_.problem.lattice.space() == Space::point)
+    return finer();
+  if (const EndChange ends = at_the_ends(scene_, state).value;
+      ends.change > 0.01 * std::max(1.0, std::abs(monodromy())))
+    return fmt::format(
+        "the state {}, by {:.2g}, and more sites do not help: choose lattice.length and boundary keys "
+        "that fit it",
+        ends.words, ends.change);
+  constexpr double helps = 0.8;  // an error of first order halves
+  try {
+    const Scene fine = refined(scene_);
+    const InitialRows rows(fine);
+    Simulation simulation = build(fine, rows.winding());
+    rows.start(simulation);
+    if (std::abs(simulation.monitors().energy - energy_of_start) <= helps * off) return finer();
+  } catch (const Error&) {
+    return finer();
+  }
+  return "more sites do not bring it nearer: the state is rough, or the lattice itself is the model";
 }
 /// Elements have several, and are as fine as their nodes.
 int Warnings::nodes_in_cell() const {
@@ -102,21 +132,27 @@ void Warnings::see(double time, std::span<const double> fields, std::span<const 
     if (rises_[m].empty() || monitors[m] > larger * rises_[m].back().value) rises_[m].push_back(largest_[m]);
   }
   if (has_pulse_) centres_.push_back({time, centre(fields)});
+  work_.see();
 }
 
 void Warnings::visit(SavedState& state) {
   state("centres of the pulse", centres_);
   state("largest values of monitors", largest_), state("rises of monitors", rises_);
-  turn_.visit(state);
+  turn_.visit(state), work_.visit(state);
 }
 
 std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energy_errors,
                                       std::span<const double> last_row) const {
   std::vector<std::string> all;
-  for (Found& found :
-       std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row), energy(outcome),
-                          energy_off_band(energy_errors, "reduce lattice.time_step, or run less far"), error(outcome),
-                          ends(outcome), without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
+  const Found at_ends = ends(outcome);
+  // An energy that walls or the density's own t change leaves any band.
+  const auto band = [&] {
+    return at_ends || work_.reads_time() ? Found()
+                                         : energy_off_band(energy_errors, "reduce lattice.time_step, or run less far");
+  };
+  for (Found& found : std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row),
+                                         at_ends ? Found() : energy(outcome), band(), error(outcome), at_ends,
+                                         without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
@@ -169,7 +205,10 @@ Found Warnings::energy(const Outcome& outcome) const {
   if (!state || nodes_in_cell() > 1) return {};
   const auto exact = exact_energy(*state, simulation_.theory().density(), scene_.problem.lattice, width_, 0);
   if (!exact) return {};
-  return energy_off_start(outcome, *exact, one_percent, finer());
+  if (work_.reads_time() && std::isnan(work_.value())) return {};
+  const KnownWork known = work_.reads_time() ? KnownWork{work_.value(), work_.uncertainty()} : KnownWork{};
+  if (!energy_off_start(outcome, *exact, one_percent, "", known)) return {};
+  return energy_off_start(outcome, *exact, one_percent, finer_or_why_not(outcome, *exact), known);
 }
 
 Found Warnings::error(const Outcome& outcome) const {

@@ -11,6 +11,7 @@
 #include "tools/rows/initial_rows.hpp"
 #include "tools/warnings/energy_warnings.hpp"
 #include "tools/warnings/step_error.hpp"
+#include "tools/warnings/work_in_time.hpp"
 
 namespace delf {
 
@@ -26,6 +27,8 @@ class Warnings {
   /// The fields of a row before TurnOfStep::rows, recorded or not.
   void see_early(std::span<const double> fields) { turn_.see(fields); }
   void visit(SavedState&);
+  /// The work of a density that reads t, up to the last recorded row.
+  const WorkInTime& work() const { return work_; }
   /// One line each, with a remedy, after the last row.
   std::vector<std::string> of(const Outcome&, const Trace& energy_errors, std::span<const double> last_row) const;
 
@@ -43,6 +46,7 @@ class Warnings {
   std::vector<std::string> continued(const Outcome&) const;
 
   std::string finer() const;
+  std::string finer_or_why_not(const Outcome&, double energy_of_start) const;
   int nodes_in_cell() const;
   double monodromy() const;
   double centre(std::span<const double> fields) const;
@@ -63,6 +67,7 @@ class Warnings {
   std::vector<Moment> largest_;
   std::vector<std::vector<Moment>> rises_;
   TurnOfStep turn_;
+  WorkInTime work_;
 };
 
 }  // namespace delf

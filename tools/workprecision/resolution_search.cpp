@@ -262,7 +262,7 @@ std::vector<WorkPrecisionOutcome::LeftOut> ResolutionSearch::left_out() const {
       if (run.entry == c) least = std::min(least, run.result.error_linf);
     std::string reason = reasons_[c];
     if (std::isfinite(least))
-      reason = fmt::format("no error below the field itself at what was run: {:.2g} at best{}", least,
+      reason = fmt::format("no error below the field itself at what was run{}",
                            out_of_time_ ? "; raise workprecision.budget" : "");
     else if (reason.empty())
       reason = Interrupt::asked() ? "interrupted before it was run"

@@ -85,6 +85,63 @@ constexpr auto what_columns_are =
     "time; "
     "times of the steps alone, of the cheapest run with at most that error";
 
+/// Names of schemes and peers that have a part in common, in words.
+struct NamePart {
+  const char *part, *shown, *meaning;
+};
+constexpr NamePart name_parts[] = {
+    {"composition (", "composition (s,p)", "sub-steps of leapfrog, of order s in time; wide pairs of order p in space"},
+    {"processed (", "processed (kernel,p)",
+     "ti4 has one kick a step, with a force gradient, and b6 six; order p in space"},
+    {" suited", "... suited", "central differences fitted to fields that are analytic in a strip, lattice.analyticity"},
+    {"spacetime (", "spacetime (m,n)", "elements of degree m in time and n in space, with this quadrature"},
+    {"cgvi ", "cgvi S R",
+     "S functions on a step, R points of its quadrature; lumped or linear elements, or pairs, in space"},
+    {"odeint ", "odeint NAME n, differences p",
+     "a stepper of Boost.odeint, of order n, on central differences of order p"},
+    {"Fourier split-step ", "Fourier split-step n", "a splitting of order n, derivatives by Fourier series"},
+    {" (peer)", "(peer)", "another program or method, with the scene's equation"},
+    {" (scene's)", "(scene's)", "the scheme that the scene itself names"}};
+
+std::string what_names_are(const WorkPrecisionOutcome& o) {
+  std::string text;
+  for (const NamePart& part : name_parts) {
+    const auto has = [&](const WorkPrecisionLine& line) {
+      const std::string name = line.scheme + (line.peer ? " (peer)" : line.own ? " (scene's)" : "");
+      return !line.front.empty() && name.find(part.part) != name.npos;
+    };
+    if (std::ranges::none_of(o.lines, has)) continue;
+    const char* begin = "  ";
+    for (const std::string& line : wrapped(fmt::format("{}: {}", part.shown, part.meaning), terminal - 6))
+      text += fmt::format("{}{}\n", begin, line), begin = "      ";
+  }
+  return text;
+}
+
+/// Schemes that were left out, by the reason: a reason that several schemes share is said once, with their number.
+std::string left_out_in_words(const WorkPrecisionOutcome& o) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const auto& [scheme, reason] : o.left_out) {
+    // "lattice.stencil = midpoint: is for mechanics" is the reason of several
+    const std::size_t named = reason.find(" = " + scheme + ": ");
+    const std::string shared = named == reason.npos ? reason : reason.substr(named + scheme.size() + 5);
+    const auto known = std::ranges::find(reasons, shared, [](const auto& r) { return r.first; });
+    if (known == reasons.end()) reasons.push_back({shared, {scheme}});
+    else known->second.push_back(scheme);
+  }
+  std::string text;
+  for (const auto& [reason, schemes] : reasons) {
+    const char* begin = "  ";
+    const std::string of = schemes.size() == 1 ? schemes.front() + ": " : fmt::format("{} schemes: ", schemes.size());
+    for (const std::string& line : wrapped(of + reason, terminal - 4))
+      text += fmt::format("{}{}\n", begin, line), begin = "    ";
+    if (schemes.size() == 1) continue;
+    for (const std::string& line : wrapped(fmt::format("{}", fmt::join(schemes, "; ")), terminal - 4))
+      text += fmt::format("    {}\n", line);
+  }
+  return text;
+}
+
 std::string escaped(const std::string& text, std::string_view special) {
   std::string out;
   for (const char c : text) {
@@ -214,6 +271,7 @@ std::string workprecision_report(const Scene& scene, const WorkPrecisionRequest&
                         runs_table(o, all));
     text += "\nschemes (nothing is interpolated)\n" + lines_table(o);
     for (const std::string& line : wrapped(what_columns_are, terminal - 2)) text += "  " + line + "\n";
+    text += what_names_are(o);
     text +=
         "\nthe cheapest run with at most an error; ratio: time of the peer over that of the engine\n" + costs_table(o);
     if (std::ranges::any_of(o.runs, [](const WorkPrecisionRun& r) { return r.tuned || r.processed; }))
@@ -222,7 +280,7 @@ std::string workprecision_report(const Scene& scene, const WorkPrecisionRequest&
           special_costs_table(o);
   }
   if (!o.left_out.empty()) text += "\nleft out\n";
-  for (const auto& one : o.left_out) text += fmt::format("  {}: {}\n", one.scheme, one.reason);
+  text += left_out_in_words(o);
   if (o.reference_error > 0)
     text += fmt::format("\nerrors below {:.1e} are no better known than the reference\n", o.reference_error);
   if (o.status != "done") text += fmt::format("\nnot finished ({})\n", o.status);

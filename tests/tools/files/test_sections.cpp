@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <hdf5.h>
+#include <hdf5_hl.h>
 
 #include <algorithm>
 #include <cmath>
@@ -254,4 +255,59 @@ TEST_CASE("figures of a point are a trajectory, and of two coordinates an orbit"
       CHECK(std::filesystem::file_size(folder / ("out/figures/" + name + ending)) > 1000);
   for (const std::string& name : c.not_drawn)
     CHECK_FALSE(std::filesystem::exists(folder / ("out/figures/" + name + ".png")));
+}
+
+TEST_CASE("axes of fields.h5 have the names of their dimension scales") {
+  delf::quiet_hdf5();
+  const auto names = [](const std::filesystem::path& path, const char* dataset) {
+    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle rows(H5Dopen2(file, dataset, H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle space(H5Dget_space(rows), H5Sclose);
+    std::string text;
+    for (int axis = 0; axis < H5Sget_simple_extent_ndims(space); ++axis) {
+      char label[64] = "";
+      H5DSget_label(rows, static_cast<unsigned>(axis), label, sizeof(label));
+      text += std::string(axis == 0 ? "" : " ") + label + (H5DSget_num_scales(rows, axis) == 1 ? "" : "?");
+    }
+    return text;
+  };
+  const Folder folder;
+  REQUIRE(delf_program(folder, "run wave-map --run.steps=4 --output.figures=off --out out").code == 0);
+  CHECK(names(folder / "out/fields.h5", "field") == "time space field_component");
+  CHECK(names(folder / "out/fields.h5", "multiplier") == "time space multiplier_component");
+  REQUIRE(delf_program(folder, "run sphere --run.steps=4 --output.figures=off --out mesh").code == 0);
+  CHECK(names(folder / "mesh/fields.h5", "field") == "time site field_component");
+  CHECK(names(folder / "mesh/fields.h5", "space") == "site coordinate");
+  CHECK(names(folder / "mesh/fields.h5", "cells") == "cell corner");
+}
+
+TEST_CASE("every frame of a mesh is a whole data set for the readers of XDMF") {
+  const Folder folder;
+  REQUIRE(delf_program(folder, "run sphere --run.steps=6 --output.every=2 --output.figures=off --out out").code == 0);
+  const std::string xdmf = read(folder / "out/fields.xdmf");
+  CHECK(contains(xdmf, "Format=\"HDF\">frames.h5:/phi/3</DataItem>"));
+  CHECK_FALSE(contains(xdmf, "HyperSlab"));
+  const delf::FieldsReader rows(folder / "out/fields.h5");
+  const Hdf5Handle file(H5Fopen((folder / "out/frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  for (const int frame : {0, 3}) {
+    const Hdf5Handle phi(H5Dopen2(file, ("phi/" + std::to_string(frame)).c_str(), H5P_DEFAULT), H5Dclose);
+    std::vector<double> values(static_cast<std::size_t>(rows.sites()));
+    REQUIRE(H5Dread(phi, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+    CHECK(values == rows.row(frame));
+  }
+}
+
+TEST_CASE("a file of another program without /field names what it has, and --dataset") {
+  delf::quiet_hdf5();
+  const Folder folder;
+  {
+    const Hdf5Handle file(H5Fcreate((folder / "other.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    const hsize_t extent[2] = {3, 64};
+    const Hdf5Handle space(H5Screate_simple(2, extent, nullptr), H5Sclose);
+    const Hdf5Handle u(H5Dcreate2(file, "u", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+    REQUIRE(u);
+  }
+  const std::string scene = "'" + folder.write("small.ini", small_scene()) + "'";
+  check_refused(delf_program(folder, "verify " + scene + " --fields other.h5 --out out"),
+                {"has no dataset /field", "--dataset u"});
 }

@@ -17,6 +17,7 @@ using namespace delf::testing;
 namespace {
 
 constexpr double pi = std::numbers::pi;
+const std::vector<double> levels{pi};
 
 MeasuredField field_on(const Lattice& lattice, bool angle, double monodromy = 0) {
   return {lattice, 0.1, monodromy, angle, 1, nullptr};
@@ -42,18 +43,18 @@ std::string kink_scene(const std::string& measures) {
 TEST_CASE("kinks are the places where a row passes pi modulo 2 pi, with the sign of its slope") {
   const Lattice lattice = Lattice::interval(5, 4);
   const std::vector<double> row{0, 2 * pi, 4 * pi, 2 * pi, 2 * pi};
-  const auto angles = kinks_of(field_on(lattice, true), row, pi);
+  const auto angles = kinks_of(field_on(lattice, true), row, levels);
   REQUIRE(angles.size() == 3);
   CHECK(angles[0].x == Approx(0.5));
   CHECK(angles[1].x == Approx(1.5));
   CHECK(angles[2].x == Approx(2.5));
   CHECK(angles[0].sign + angles[1].sign + angles[2].sign == 1);
   // a value on the line passes level pi once only
-  const auto numbers = kinks_of(field_on(lattice, false), row, pi);
+  const auto numbers = kinks_of(field_on(lattice, false), row, levels);
   REQUIRE(numbers.size() == 1);
   CHECK(numbers[0].x == Approx(0.5));
   // two in one cell, from right to left where the field falls
-  const auto steep = kinks_of(field_on(lattice, true), std::vector<double>{4 * pi, 0, 0, 0, 0}, pi);
+  const auto steep = kinks_of(field_on(lattice, true), std::vector<double>{4 * pi, 0, 0, 0, 0}, levels);
   REQUIRE(steep.size() == 2);
   CHECK(steep[0].x == Approx(0.25));
   CHECK(steep[1].x == Approx(0.75));
@@ -62,15 +63,15 @@ TEST_CASE("kinks are the places where a row passes pi modulo 2 pi, with the sign
 
 TEST_CASE("a field without bound has no kinks") {
   const Lattice lattice = Lattice::interval(4, 3);
-  CHECK(kinks_of(field_on(lattice, true), std::vector<double>{0, 1e100, -1e100, 0}, pi).empty());
-  CHECK(kinks_of(field_on(lattice, true), std::vector<double>{0, std::nan(""), 1e300 * 1e300, 0}, pi).empty());
+  CHECK(kinks_of(field_on(lattice, true), std::vector<double>{0, 1e100, -1e100, 0}, levels).empty());
+  CHECK(kinks_of(field_on(lattice, true), std::vector<double>{0, std::nan(""), 1e300 * 1e300, 0}, levels).empty());
 }
 
 TEST_CASE("a kink across the seam of a circle is found") {
   const Lattice lattice = Lattice::circle(4, 4);
   const std::vector<double> row{0.1, 0.2, 0.3, 0.4};
-  CHECK(kinks_of(field_on(lattice, true), row, pi).empty());
-  const auto kinks = kinks_of(field_on(lattice, true, 2 * pi), row, pi);
+  CHECK(kinks_of(field_on(lattice, true), row, levels).empty());
+  const auto kinks = kinks_of(field_on(lattice, true, 2 * pi), row, levels);
   REQUIRE(kinks.size() == 1);
   CHECK(kinks[0].x == Approx(3 + (pi - 0.4) / (2 * pi + 0.1 - 0.4)));
 }

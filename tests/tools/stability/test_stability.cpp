@@ -503,3 +503,18 @@ TEST_CASE("the map and the dispersion relation are drawn") {
     for (const char* ending : {".png", ".svg"})
       CHECK(std::filesystem::file_size(folder.path() / "figures" / (name + ending)) > 2000);
 }
+
+TEST_CASE("what takes long is announced with its duration, and what is short is not") {
+  const testing::Folder folder;
+  const testing::Ran cut =
+      testing::shell(folder, "'" + testing::program_path() +
+                                 "' stability collision --out out & p=$!; sleep 1; kill -TERM $p; wait $p");
+  CHECK(testing::contains(cut.err, "24 limits, 8 maps and "));
+  CHECK(testing::contains(cut.err, "stress cases, about "));
+  CHECK_FALSE(testing::contains(
+      testing::delf_program(folder,
+                            "stability collision --stability.schemes=triangle-vertex --stability.mass_steps=1 "
+                            "--stability.steps=100 --stability.corners=none --stability.map=off --out out")
+          .err,
+      "limits, "));
+}

@@ -289,3 +289,26 @@ TEST_CASE("a run whose formula is refused has the refusal as its failure") {
   CHECK(contains(run["failure"].get<std::string>(), "measure.wrong"));
   CHECK(contains(run["failure"].get<std::string>(), "speeed"));
 }
+
+TEST_CASE("runs are shown side by side: by compare, and by a sweep over words") {
+  const Folder folder;
+  const std::string scene = folder.write("kink.ini", scene_with_kink());
+  const auto table = [](const Ran& ran) {
+    return contains(ran.out, "error_linf") && contains(ran.out, "energy_error_max");
+  };
+  const Ran words = delf_program(folder, "compare '" + scene + "' --lattice.stencil=triangle,rectangle --out words");
+  INFO(words.err);
+  REQUIRE(words.code == 0);
+  CHECK(table(words));
+  CHECK(table(delf_program(folder, "sweep '" + scene + "' --lattice.stencil=triangle,rectangle --out words")));
+  const Ran numbers = delf_program(folder, "compare '" + scene + "' --lattice.sites=101,201 --out numbers");
+  CHECK(table(numbers));
+  CHECK_FALSE(table(delf_program(folder, "sweep '" + scene + "' --lattice.sites=101,201 --out swept")));
+  if (has_gnuplot()) {
+    CHECK(std::filesystem::exists(folder / "words/figures/sweep.svg"));
+    const std::string figure = read(folder / "words/figures/sweep.svg");
+    CHECK(contains(figure, "rectangle"));
+    CHECK(contains(figure, "side by side"));
+  }
+  CHECK(contains(delf_program(folder, "compare '" + scene + "'").err, "compare what? Give a key several values"));
+}

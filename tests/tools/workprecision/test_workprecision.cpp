@@ -380,3 +380,15 @@ TEST_CASE("peers are in the same run as the engine, and the tables compare them"
   CHECK(Json::parse(read(folder / "other/workprecision.json"))["runs"].size() == 1);
 }
 #endif
+
+TEST_CASE("the report explains names, and says a reason that schemes share once with their number") {
+  const WithScene folder;
+  const Ran ran = delf_program(folder,
+                               "workprecision small.ini --workprecision.sites=16,32 --workprecision.peers=off "
+                               "--workprecision.schemes='composition (2,4),midpoint,trapezoidal,vertex' --out out");
+  INFO(ran.out << ran.err);
+  CHECK(contains(ran.out, "composition (s,p): sub-steps of leapfrog"));
+  CHECK_FALSE(contains(ran.out, "odeint NAME"));
+  CHECK(contains(ran.out, "3 schemes: is for mechanics and couples no neighbours"));
+  CHECK(contains(ran.out, "midpoint; trapezoidal; vertex"));
+}

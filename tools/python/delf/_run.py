@@ -223,7 +223,8 @@ def _read_fields(path: str) -> "Tuple[Arrays, Components]":
     except ImportError:
         raise BadInput(f"{path}: reading it takes h5py; install python3-h5py, or run in memory") from None
     with h5py.File(path) as file:
-        arrays = {name: file[name][()] for name in ("time", "space", *sorted(set(file) - {"time", "space"}))}
+        scales = {name for name in file if file[name].attrs.get("CLASS") == b"DIMENSION_SCALE"}
+        arrays = {name: file[name][()] for name in ("time", "space", *sorted(set(file) - {"time", "space"} - scales))}
         names = {name: file[name].attrs.get("components", b"") for name in arrays}
         return arrays, {name: text.decode().split(",") for name, text in names.items() if text}
 
