@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <utility>
+#include <variant>
 
 #include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
@@ -76,17 +77,18 @@ void say_warnings(const Scene& scene) {
   for (const std::string& warning : scene.warnings) std::fputs((warning + "\n").c_str(), stderr);
 }
 
-Scene scene_of(Settings settings) {
-  Scene scene = read_scene(std::move(settings));
-  say_warnings(scene);
-  return scene;
+/// Reads a scene, on a lattice or on a mesh, and carries out what `work` does with it in the folder of its results.
+template <class Work>
+ExitCode with_scene(Settings settings, const Arguments& arguments, const Work& work) {
+  AnyScene any = read_any_scene(std::move(settings));
+  return std::visit(
+      [&](auto& scene) {
+        const Scene& common = common_part(scene);
+        say_warnings(common);
+        return work(scene, arguments.out.value_or("results/" + common.name));
+      },
+      any);
 }
-ComplexScene complex_scene_of(Settings settings) {
-  ComplexScene c = read_complex_scene(std::move(settings));
-  say_warnings(c.scene);
-  return c;
-}
-Scene scene_of(const Arguments& arguments) { return scene_of(settings_of(arguments)); }
 
 void refuse(const Arguments& arguments, bool keys) {
   if (keys && !arguments.keys.empty())
@@ -103,8 +105,8 @@ std::string resolved_of(const Scene& scene) {
 std::string resolved_of(const ComplexScene& mesh) { return resolved_text(mesh); }
 
 /// Runs a scene in a folder, whose earlier run is kept unless the folder is named, or --overwrite given.
-template <class AnyScene>
-ExitCode run_keeping(const Arguments& arguments, const AnyScene& scene, const std::filesystem::path& folder) {
+template <class SomeScene>
+ExitCode run_keeping(const Arguments& arguments, const SomeScene& scene, const std::filesystem::path& folder) {
   std::optional<KeptResults> earlier;
   if (std::error_code none;
       !arguments.out && !arguments.overwrite && std::filesystem::exists(folder / "scene.ini", none))
@@ -113,13 +115,9 @@ ExitCode run_keeping(const Arguments& arguments, const AnyScene& scene, const st
 }
 
 ExitCode carry_out_run(const Arguments& arguments) {
-  Settings settings = settings_of(arguments);
-  if (is_on_mesh(settings)) {
-    const ComplexScene mesh = complex_scene_of(std::move(settings));
-    return run_keeping(arguments, mesh, arguments.out.value_or("results/" + mesh.scene.name));
-  }
-  const Scene scene = scene_of(std::move(settings));
-  return run_keeping(arguments, scene, arguments.out.value_or("results/" + scene.name));
+  return with_scene(settings_of(arguments), arguments, [&](const auto& scene, const std::string& folder) {
+    return run_keeping(arguments, scene, folder);
+  });
 }
 
 ExitCode carry_out_resume(const Arguments& arguments) {
@@ -132,26 +130,18 @@ ExitCode carry_out_resume(const Arguments& arguments) {
 
 ExitCode carry_out_plan(const Arguments& arguments) {
   refuse(arguments, false);
-  Settings settings = settings_of(arguments);
-  if (is_on_mesh(settings)) {
-    if (arguments.latex)
-      throw BadScene("command line: --latex: is for lattices, and this scene is on a mesh; leave it out");
-    return plan(complex_scene_of(std::move(settings)));
-  }
-  return plan(scene_of(std::move(settings)), arguments.latex);
+  return with_scene(settings_of(arguments), arguments,
+                    [&](const auto& scene, const std::string&) { return plan(scene, arguments.latex); });
 }
 
 ExitCode carry_out_verify(const Arguments& arguments) {
   Settings settings = settings_of(arguments);
   if (std::error_code none; arguments.fields && !std::filesystem::exists(file_of_rows(*arguments.fields), none))
     throw BadScene(fmt::format("command line: --fields {}: no such file; check the path", *arguments.fields));
-  if (is_on_mesh(settings)) {
-    const ComplexScene mesh = complex_scene_of(std::move(settings));
-    return verify(mesh, arguments.out.value_or("results/" + mesh.scene.name), arguments.fields);
-  }
-  if (arguments.fields) imply_rows(settings, *arguments.fields);
-  const Scene scene = scene_of(std::move(settings));
-  return verify(scene, arguments.out.value_or("results/" + scene.name), arguments.fields, arguments.nearby);
+  if (arguments.fields && !is_on_mesh(settings)) imply_rows(settings, *arguments.fields);
+  return with_scene(std::move(settings), arguments, [&](const auto& scene, const std::string& folder) {
+    return verify(scene, folder, arguments.fields, arguments.nearby);
+  });
 }
 
 ExitCode carry_out_sweep(const Arguments& arguments) {
@@ -163,28 +153,19 @@ ExitCode carry_out_compare(const Arguments& arguments) {
 }
 
 ExitCode carry_out_convergence(const Arguments& arguments) {
-  Settings settings = settings_of(arguments);
-  if (is_on_mesh(settings)) {
-    const ComplexScene mesh = complex_scene_of(std::move(settings));
-    return convergence(mesh, arguments.out.value_or("results/" + mesh.scene.name));
-  }
-  const Scene scene = scene_of(std::move(settings));
-  return convergence(scene, arguments.out.value_or("results/" + scene.name));
+  return with_scene(settings_of(arguments), arguments,
+                    [](const auto& scene, const std::string& folder) { return convergence(scene, folder); });
 }
 
 ExitCode carry_out_workprecision(const Arguments& arguments) {
-  const Scene scene = scene_of(arguments);
+  const Scene scene = read_scene(settings_of(arguments));
+  say_warnings(scene);
   return workprecision(scene, arguments.out.value_or("results/" + scene.name));
 }
 
 ExitCode carry_out_stability(const Arguments& arguments) {
-  Settings settings = settings_of(arguments);
-  if (is_on_mesh(settings)) {
-    const ComplexScene mesh = complex_scene_of(std::move(settings));
-    return mesh_stability(mesh, arguments.out.value_or("results/" + mesh.scene.name));
-  }
-  const Scene scene = scene_of(std::move(settings));
-  return stability(scene, arguments.out.value_or("results/" + scene.name));
+  return with_scene(settings_of(arguments), arguments,
+                    [](const auto& scene, const std::string& folder) { return stability(scene, folder); });
 }
 
 ExitCode carry_out_list(const Arguments& arguments) {

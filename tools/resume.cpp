@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "tools/complex/complex_commands.hpp"
 #include "tools/files/checkpoint_file.hpp"
@@ -95,6 +96,8 @@ ExitCode resume(const fs::path& folder, const std::vector<Setting>& on_command_l
   const auto take_over = [&](Scene& scene) {
     scene.name = head.name;
     scene.warnings = head.warnings;
+    // The number of steps is a guess where the field chooses them, and the time tells if the run is over.
+    if (scene.until) scene.steps = std::max(scene.steps, head.row + 1);
     if (std::error_code none; head.row >= scene.steps && fs::exists(folder / "summary.json", none))
       refuse(fmt::format("the run is finished, at row {}; to go on, raise run.until or run.steps, as --run.steps={}",
                          head.row, 2 * std::max<std::int64_t>(1, head.row)));
@@ -102,18 +105,13 @@ ExitCode resume(const fs::path& folder, const std::vector<Setting>& on_command_l
       refuse(fmt::format("the run is at row {}, beyond run.steps = {}; raise run.until or run.steps", head.row,
                          scene.steps));
   };
-  Settings settings = read_settings(folder / "scene.ini", on_command_line);
-  // The number of steps is a guess where the field chooses them, and the time tells if the run is over.
-  if (is_on_mesh(settings)) {
-    ComplexScene mesh = read_complex_scene(std::move(settings));
-    if (mesh.scene.until) mesh.scene.steps = std::max(mesh.scene.steps, head.row + 1);
-    take_over(mesh.scene);
-    return run(mesh, folder, std::move(resumed));
-  }
-  Scene scene = read_scene(std::move(settings));
-  if (scene.until) scene.steps = std::max(scene.steps, head.row + 1);
-  take_over(scene);
-  return run(scene, folder, std::move(resumed));
+  AnyScene any = read_any_scene(read_settings(folder / "scene.ini", on_command_line));
+  return std::visit(
+      [&](auto& scene) {
+        take_over(common_part(scene));
+        return run(scene, folder, std::move(resumed));
+      },
+      any);
 }
 
 }  // namespace delf

@@ -31,29 +31,11 @@ ConvergenceTable converge(const Scene& scene, int levels) {
   for (const double phi : InitialRows(scene).row0()) table.size = std::max(table.size, std::abs(phi));
   std::vector<double> before;  // the last row of the level before
   PlacedRow placed_before;
-  for (int level = 0; level < levels; ++level) {
+  fill(table, levels, &ConvergenceLevel::linf, [&](int level) {
     const Scene fine = refined(scene, 1 << level);
     const Lattice& lattice = fine.problem.lattice;
-    QuietEnd end;
-    try {
-      end = run_quietly(fine);
-    } catch (const NumericalFailure& error) {
-      if (level == 0) throw;
-      table.status = status_of(error);
-      // A limit of h/k² may have been passed if h/k has not changed, and the coarser steps were stable.
-      table.ended =
-          fmt::format("N = {}: {}; h/k^2 doubles from line to line, and may be limited: begin with smaller steps",
-                      lattice.sites(), error.what());
-      break;
-    } catch (const BadInput& error) {  // such as more sites than are taken
-      if (level == 0) throw;
-      table.ended = error.what();
-      break;
-    }
-    if (!end.finished) {
-      table.status = "interrupted";
-      break;
-    }
+    QuietEnd end = run_quietly(fine);
+    if (!end.finished) return false;
     ConvergenceLevel now;
     now.sites = lattice.sites(), now.space_step = lattice.space_step(), now.time_step = fine.problem.time_step;
     now.seconds = end.seconds, now.measures = end.measures, now.steps = fine.steps;
@@ -80,13 +62,30 @@ ConvergenceTable converge(const Scene& scene, int levels) {
     }
     table.levels.push_back(std::move(now));
     before = std::move(end.row), placed_before = std::move(end.placed);
-  }
-  find_orders(table, &ConvergenceLevel::linf);
+    return true;
+  });
+  // A limit of h/k² may have been passed if h/k has not changed, and the coarser steps were stable.
+  if (table.status != "done" && table.status != "interrupted")
+    table.ended =
+        fmt::format("N = {}: {}; h/k^2 doubles from line to line, and may be limited: begin with smaller steps",
+                    refined(scene, 1 << table.levels.size()).problem.lattice.sites(), table.ended);
   return table;
 }
 
-void find_orders(ConvergenceTable& table, double ConvergenceLevel::*norm) {
+void fill(ConvergenceTable& table, int levels, double ConvergenceLevel::*norm,
+          const std::function<bool(int level)>& add) {
   table.norm = norm;
+  for (int level = 0; level < levels && table.status == "done" && table.ended.empty(); ++level) {
+    try {
+      if (!add(level)) table.status = "interrupted";
+    } catch (const NumericalFailure& error) {
+      if (level == 0) throw;
+      table.status = status_of(error), table.ended = error.what();
+    } catch (const BadInput& error) {  // such as more sites than are taken
+      if (level == 0) throw;
+      table.ended = error.what();
+    }
+  }
   for (std::size_t i = 0; i + 1 < table.levels.size(); ++i) {
     const double rounding = 1e-12 * table.levels[i + 1].size;  // no order comes of it
     const double a = table.levels[i].*norm, b = table.levels[i + 1].*norm;

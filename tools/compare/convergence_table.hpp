@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -36,11 +37,12 @@ struct ConvergenceTable {
   double order() const;
 };
 
-/// Each level's order, from its error in that norm and the next level's, where both are above rounding.
-void find_orders(ConvergenceTable&, double ConvergenceLevel::*norm);
+/// Fills a table with levels 0, 1, …, which `add` runs and appends, one at a call; it returns false if it was interrupted. A
+/// level that fails, or that cannot be run, is the end of the table; the first throws. Then finds each level's order, from
+/// its error in that norm and the next level's, where both are above rounding.
+void fill(ConvergenceTable&, int levels, double ConvergenceLevel::*norm, const std::function<bool(int level)>& add);
 
-/// Levels 0, 1, …: the scene at 1, ½, ¼, … of its steps in time and space. A level that fails, or that
-/// cannot be run, is the end of the table; the first throws.
+/// Levels of the scene at 1, ½, ¼, … of its steps in time and space.
 ConvergenceTable converge(const Scene&, int levels);
 
 }  // namespace delf

@@ -13,10 +13,8 @@ namespace delf {
 
 /// `delf run`, `delf plan` and `delf verify` of a scene on a mesh. With `resumed`, the run of that folder goes on from there.
 ExitCode run(const ComplexScene&, const std::filesystem::path& folder, Resumed resumed = {});
-ExitCode plan(const ComplexScene&);
-ExitCode verify(const ComplexScene&, const std::filesystem::path& folder, const std::optional<std::string>& fields);
-
-/// h_K of asynchronous cells: lattice.courant times the shortest edge of each.
-std::vector<double> cell_steps(const ComplexScene&);
+ExitCode plan(const ComplexScene&, bool latex);
+ExitCode verify(const ComplexScene&, const std::filesystem::path& folder, const std::optional<std::string>& fields,
+                const std::vector<std::string>& nearby);
 
 }  // namespace delf

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "lattice/index.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_stepping.hpp"
 #include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
 
@@ -22,91 +22,88 @@ std::string levels_in_words(const ComplexPlan& plan) {
                      plan.widest);
 }
 
+void say_memory(std::size_t bytes, std::size_t rows) {
+  fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes, rows, bytes - rows);
+}
+
 /// Of a finite complex.
-ExitCode plan_sites(const ComplexScene& c) {
-  try {
-    const StaticField field(c);
-    fmt::print("{}: {}, {} sites, {}\n", c.scene.name, c.scene.problem.theory, c.sites(), c.mesh_in_words());
-    fmt::print("  state      {}\n", c.state_in_words());
-    const ComplexPlan& plan = field.solver().plan();
-    const std::size_t bytes = field.bytes();
-    fmt::print("  stencils   {} in {} families: of one shape, and coupled alike\n", c.cells(),
-               field.system().families());
-    if (const std::string shape = c.topology_in_words(); !shape.empty())
-      fmt::print("  cells      {}, area {:.6g}\n", shape, c.tiling.area);
-    fmt::print("  solve      {}\n", plan.describe());
-    fmt::print("             level by level, each by {}\n",
-               field.solver().is_direct() ? plan.largest == 1 ? "divisions: explicit" : "one sparse factorisation"
-                                          : "Newton steps with a sparse matrix and a line search");
-    fmt::print("  levels     {}\n", levels_in_words(plan));
-    if (const std::string threads = threads_in_words(field.solver(), c.scene.problem.threads); !threads.empty())
-      fmt::print("  threads    {}\n", threads);
-    fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes,
-               8 * field.values().size(), bytes - 8 * field.values().size());
-    for (const std::string& gap : c.tiling.gaps) fmt::print("  warning    {}\n", gap);
-  } catch (const BadInput& bad) {
-    throw c.scene.settings.located(bad);
-  }
+void plan_sites(const ComplexScene& c) {
+  const StaticField field(c);
+  fmt::print("{}: {}, {} sites, {}\n", c.scene.name, c.scene.problem.theory, c.sites(), c.mesh_in_words());
+  fmt::print("  state      {}\n", c.state_in_words());
+  const ComplexPlan& plan = field.solver().plan();
+  fmt::print("  stencils   {} in {} families: of one shape, and coupled alike\n", c.cells(), field.system().families());
+  if (const std::string shape = c.topology_in_words(); !shape.empty())
+    fmt::print("  cells      {}, area {:.6g}\n", shape, c.tiling.area);
+  fmt::print("  solve      {}\n", plan.describe());
+  fmt::print("             level by level, each by {}\n", !field.solver().is_direct()
+                                                              ? "Newton steps with a sparse matrix and a line search"
+                                                          : plan.largest == 1 ? "divisions: explicit"
+                                                                              : "one sparse factorisation");
+  fmt::print("  levels     {}\n", levels_in_words(plan));
+  if (const std::string threads = threads_in_words(field.solver(), c.scene.problem.threads); !threads.empty())
+    fmt::print("  threads    {}\n", threads);
+  say_memory(field.bytes(), 8 * field.values().size());
+  for (const std::string& gap : c.tiling.gaps) fmt::print("  warning    {}\n", gap);
   fmt::print(
       "  left out   symbol, lattice norms: not applicable to a finite complex; energies, unless its sites lie in "
       "rows\n");
-  return ExitCode::done;
 }
 
-}  // namespace
-
-ExitCode plan(const ComplexScene& c) {
-  if (c.stencils) return plan_sites(c);
+void plan_mesh(const ComplexScene& c) {
   const CellSpace& space = *c.space;
-  const double area = area_of(space);
+  const auto walls = boundary_points(space.mesh).size();
   fmt::print("{}: {}, {} points, {}\n", c.scene.name, c.scene.problem.theory, space.sites(), c.mesh_in_words());
   fmt::print("  state      {}\n", c.state_in_words());
   fmt::print("  mesh       {} {:.6g}, shortest edge {:.6g}, {} boundary points{}\n",
-             space.mesh.dimension == 1 ? "length" : "area", area, shortest_edge(space.mesh),
-             boundary_points(space.mesh).size(),
-             boundary_points(space.mesh).empty()      ? ""
+             space.mesh.dimension == 1 ? "length" : "area", area_of(space), shortest_edge(space.mesh), walls,
+             walls == 0                               ? ""
              : std::ranges::count(space.fixed, 1) > 0 ? ", fixed"
                                                       : ", natural");
   fmt::print("             {}\n", c.topology_in_words());
-  const std::size_t values = 8 * at(space.sites()) * c.fields.size();
-  const auto say_memory = [](std::size_t bytes, std::size_t rows) {
-    fmt::print("  memory     {} bytes: rows of the field {} B, stencils and matrices {} B\n", bytes, rows,
-               bytes - rows);
-  };
-  try {
-    if (c.time == MeshTime::none) {
-      const StaticField field(c);
-      fmt::print("  stencils   {} of sites and cells\n  solve      {}: sparse Newton steps with a line search\n",
-                 field.system().complex().stencils(), field.solver().plan().describe());
-      say_memory(field.bytes(), values);
-    } else if (c.time == MeshTime::cells) {
-      const std::vector<double> steps = cell_steps(c);
-      const auto [least, largest] = std::ranges::minmax(steps);
-      double updates = 0;
-      for (const double h : steps) updates += static_cast<double>(c.scene.steps) * c.scene.problem.time_step / h;
-      fmt::print(
-          "  steps      each cell by its own, {:.6g} to {:.6g}: {:.6g} updates, and {:.6g} with the least for all\n",
-          least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
-      fmt::print("  solve      explicit, in the order of a priority queue\n");
-      say_memory(AsynchronousEvolution(space, steps).bytes(), 2 * values);
-    } else {
-      const Simulation simulation(c.problem_on_mesh());
-      fmt::print("  steps      {} of {}\n", c.scene.steps,
-                 c.step_control()
-                     ? fmt::format("h = {:.6g}/sqrt(1 + {:.6g}^2 <phi_t^2>), reversible; about so many, or more",
-                                   c.scene.problem.time_step, *c.step_control())
-                 : c.time_steps.empty() ? fmt::format("h = {:.6g}", c.scene.problem.time_step)
-                                        : fmt::format("{} lengths in turn", c.time_steps.size()));
-      if (const auto most = c.has_method() ? std::nullopt : longest_step(simulation.evolution().system()))
-        fmt::print("  stable     h below {:.6g}, by linear theory about 0\n", *most);
-      fmt::print("{}", simulation.plan_report());
-    }
-  } catch (const BadInput& bad) {
-    throw c.scene.settings.located(bad);
+  const std::size_t values = 8 * space.fields_of_row();
+  if (c.time == MeshTime::none) {
+    const StaticField field(c);
+    fmt::print("  stencils   {} of sites and cells\n  solve      {}: sparse Newton steps with a line search\n",
+               field.system().complex().stencils(), field.solver().plan().describe());
+    say_memory(field.bytes(), values);
+  } else if (c.time == MeshTime::cells) {
+    const std::vector<double> steps = cell_steps(c);
+    const auto [least, largest] = std::ranges::minmax(steps);
+    double updates = 0;
+    for (const double h : steps) updates += static_cast<double>(c.scene.steps) * c.scene.problem.time_step / h;
+    fmt::print(
+        "  steps      each cell by its own, {:.6g} to {:.6g}: {:.6g} updates, and {:.6g} with the least for all\n",
+        least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
+    fmt::print("  solve      explicit, in the order of a priority queue\n");
+    say_memory(AsynchronousEvolution(space, steps).bytes(), 2 * values);
+  } else {
+    const Problem& p = c.scene.problem;
+    const Simulation simulation(c.problem_on_mesh());
+    fmt::print("  steps      {} of {}\n", c.scene.steps,
+               p.step_control
+                   ? fmt::format("h = {:.6g}/sqrt(1 + {:.6g}^2 <phi_t^2>), reversible; about so many, or more",
+                                 p.time_step, *p.step_control)
+               : p.time_steps.empty() ? fmt::format("h = {:.6g}", p.time_step)
+                                      : fmt::format("{} lengths in turn", p.time_steps.size()));
+    if (const auto most = c.has_method() ? std::nullopt : longest_step(simulation.evolution().system()))
+      fmt::print("  stable     h below {:.6g}, by linear theory about 0\n", *most);
+    fmt::print("{}", simulation.plan_report());
   }
   fmt::print(
       "  left out   symbol, strips, lattice norms: not applicable to a mesh; errors are sums over sites with their "
       "masses\n");
+}
+
+}  // namespace
+
+ExitCode plan(const ComplexScene& c, bool latex) {
+  if (latex) throw BadScene("command line: --latex: is for lattices, and this scene is on a mesh; leave it out");
+  try {
+    c.stencils ? plan_sites(c) : plan_mesh(c);
+  } catch (const BadInput& bad) {
+    throw c.scene.settings.located(bad);
+  }
   return ExitCode::done;
 }
 

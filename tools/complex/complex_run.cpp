@@ -8,6 +8,7 @@
 
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_stepping.hpp"
+#include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/report/seconds_since.hpp"
 #include "tools/run/run_folder.hpp"
@@ -85,14 +86,10 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
   Outcome o;
   o.state = c.state_in_words();
   o.start = StartRule::legendre;
-  std::unique_ptr<MeshEvolution> evolution;
-  std::optional<MeshStepping> stepping;
+  std::unique_ptr<MeshStepping> stepping;
   std::optional<RunFiles::Written> kept;
   try {
-    if (!c.is_one_problem()) {
-      evolution = make_mesh_evolution(c);
-      stepping.emplace(c, *evolution, o);
-    }
+    if (!c.is_one_problem()) stepping = make_mesh_stepping(c, o);
     if (resumed.state) {
       (*resumed.state)("written", kept.emplace());
       stepping->visit(*resumed.state);
@@ -116,10 +113,10 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
   });
   if (run.failures().first() && o.status == "done")
     std::rethrow_exception(run.failures().first());  // bad input: there are no results
-  if (evolution) evolution->describe(o);
+  if (stepping) stepping->describe(o);
   run.attempt([&] { recorder.close(); });
   return run.end(subject_of(c), c.scene,
-                 [&] { return c.scene.figures ? draw_mesh(c, recorder.film(), levels, folder) : std::string(); });
+                 [&] { return c.scene.figures ? draw_mesh(c, recorder.frames(), levels, folder) : std::string(); });
 }
 
 }  // namespace delf

@@ -13,8 +13,6 @@
 #include <span>
 #include <utility>
 
-#include "jets/expressions/evaluate.hpp"
-#include "jets/expressions/parse.hpp"
 #include "lattice/index.hpp"
 #include "lattice/space/mesh_topology.hpp"
 #include "schemes/complex/circle_fibre.hpp"
@@ -24,82 +22,45 @@
 #include "tools/complex/mesh_text.hpp"
 #include "tools/rows/exact_solution.hpp"
 #include "tools/scene/key_warning.hpp"
+#include "tools/scene/keys_of_spaces.hpp"
+#include "tools/scene/mesh_methods.hpp"
+#include "tools/scene/scene_parts.hpp"
 #include "tools/scene/steps_in_turn.hpp"
-#include "tools/scene/values.hpp"
 
 namespace delf {
 namespace {
 
-constexpr double usual_records = 100;
-constexpr std::string_view reversible = "reversible";  // of lattice.time_steps: chosen by the field
+constexpr int usual_records = 100;
 
-/// Keys that scenes on a mesh read, besides those of the theory, initial.FIELD and exact.FIELD.
-const std::set<std::string, std::less<>> read_keys{
-    "theory.name",        "theory.fibre",      "lattice.space",         "lattice.mesh",        "lattice.merge",
-    "lattice.time",       "lattice.courant",   "lattice.time_step",     "lattice.time_steps",  "lattice.step_control",
-    "boundary.mesh",      "scheme.tolerance",  "scheme.max_iterations", "initial.state",       "run.until",
-    "run.steps",          "run.seed",          "output.every",          "output.checkpoint",   "output.fields",
-    "output.figures",     "output.format",     "output.titles",         "verify.variations",   "verify.moments",
-    "verify.tolerance",   "verify.fault",      "verify.generator",      "verify.force",        "scheme.method",
-    "convergence.levels", "convergence.order", "convergence.agreement", "stability.agreement", "stability.steps",
-    "stability.fault"};
+SpaceKind kind_of(const ComplexScene& c) {
+  return c.stencils ? SpaceKind::spacetime : c.time == MeshTime::none ? SpaceKind::still : SpaceKind::mesh;
+}
 
-/// Keys of time, which lattice.time = none has none of.
-const std::set<std::string, std::less<>> time_keys{"lattice.courant",      "lattice.time_step", "lattice.time_steps",
-                                                   "lattice.step_control", "run.until",         "run.steps",
-                                                   "output.every"};
-
-/// Keys of stencils are of regular lattices.
-bool has_keys_on_meshes(const MethodEntry& method) { return method.on_meshes && !method.reads_stencil; }
-
-void refuse_unread(const Settings& settings, const TheoryEntry& theory, const ParameterValues& parameters,
-                   const MethodEntry& method, const std::vector<Component>& fields, bool still, bool spacetime) {
-  std::set<std::string, std::less<>> known = read_keys;
-  if (has_keys_on_meshes(method))
-    for (const Parameter& p : method.parameters) known.insert(p.key);
-  for (const Parameter& p : parameters_of(theory, parameters)) known.insert(p.key);
-  for (const Component& field : fields)
-    known.insert({"exact." + field.name, "initial." + field.name, "initial." + field.name + "_t"});
-  if (spacetime) known.insert("run.threads");
-  for (const Setting& s : settings.all()) {
-    if (s.key.starts_with("sweep.")) continue;  // of the command
-    if (!known.contains(s.key))
-      throw settings.error(s.key,
-                           s.key.starts_with("exact.") || s.key.starts_with("initial.")
-                               ? "has no effect on a mesh, where fields start from formulas; remove it"
-                               : "needs a regular lattice (not applicable to lattice.space = complex); remove it");
-    if ((still || spacetime) &&
-        (time_keys.contains(s.key) || (s.key.starts_with("initial.") && s.key.ends_with("_t")) ||
-         (spacetime && (s.key == "lattice.time" || s.key == "boundary.mesh"))))
-      throw settings.error(s.key, spacetime ? "has no effect where sites have times of their own; remove it"
-                                            : "has no effect with lattice.time = none; remove it");
+/// Keys of the program say themselves which spaces read them; those that the theory, the method and the fields declare are
+/// read by every mesh, but for rates of a field without time.
+void refuse_unread(const ComplexScene& c) {
+  const Problem& p = c.scene.problem;
+  std::set<std::string, std::less<>> declared, rates;
+  if (const MethodEntry& method = find_method(p.method); is_named_on_meshes(method))
+    for (const Parameter& parameter : method.parameters) declared.insert(parameter.key);
+  for (const Parameter& parameter : parameters_of(find_theory(p.theory), p.parameters)) declared.insert(parameter.key);
+  for (const Component& field : c.theory->fields()) {
+    declared.insert({"exact." + field.name, "initial." + field.name});
+    rates.insert("initial." + field.name + "_t");
   }
-}
-
-void read(ParameterValues& parameters, const Values& values, const std::vector<Parameter>& declared) {
-  for (const Parameter& p : declared)
-    if (values.given(p.key) || p.otherwise.empty()) parameters[p.key] = values.parameter(p);
-}
-
-ParameterValues read_parameters(const Values& values, const TheoryEntry& theory) {
-  ParameterValues parameters;
-  read(parameters, values, theory.parameters);
-  if (theory.further)
-    for (const Parameter& p : theory.further(parameters)) parameters[p.key] = values.parameter(p);
-  return parameters;
+  for (const Setting& s : c.scene.settings.all()) {
+    if (declared.contains(s.key)) continue;
+    const SpaceKind kind = kind_of(c);
+    const std::string why = rates.contains(s.key) ? why_without_time(kind) : why_unread(kind, s.key);
+    if (!why.empty()) throw c.scene.settings.error(s.key, why + "; remove it");
+  }
 }
 
 std::string names_of_methods_on_meshes() {
   std::vector<std::string> names;
   for (const MethodEntry* entry : method_entries())
-    if (has_keys_on_meshes(*entry)) names.push_back(entry->name);
+    if (is_named_on_meshes(*entry)) names.push_back(entry->name);
   return fmt::format("{}", fmt::join(names, " or "));
-}
-
-std::vector<double> read_time_steps(const Settings& settings, const Values& values) {
-  const auto text = values.text("lattice.time_steps");
-  if (!text || *text == reversible) return {};
-  return steps_in_turn(settings, *text);
 }
 
 /// Of a formula: the theory's parameters by their names.
@@ -111,8 +72,8 @@ std::vector<std::pair<std::string, double>> numbers_of(const ParameterValues& pa
   return numbers;
 }
 
-void read_fields(ComplexScene& c, const Values& values, const ParameterValues& parameters) {
-  const auto numbers = numbers_of(parameters);
+void read_fields(ComplexScene& c, const Values& values) {
+  const auto numbers = numbers_of(c.scene.problem.parameters);
   const Settings& settings = c.scene.settings;
   const auto formula = [&](const std::string& key) -> std::optional<PlaceFormula> {
     const auto text = values.given(key) ? values.text(key) : std::nullopt;
@@ -169,42 +130,22 @@ void require_constraint(const ComplexScene& c) {
   });
 }
 
-/// A formula of t, x, y and z with its first and second derivative by each.
-class DerivativesAlong {
- public:
-  DerivativesAlong(std::string_view text, const std::vector<std::pair<std::string, double>>& numbers,
-                   const std::string& key) {
-    expressions::Graph graph;
-    const int root = expressions::parse(graph, text, {{{"t", 0}, {"x", 1}, {"y", 2}, {"z", 3}}, numbers}, key);
-    for (int v = 0; v < 4; ++v) {
-      const int first = graph.differentiate(root, v);
-      of_[v] = {expressions::Evaluation(graph, first), expressions::Evaluation(graph, graph.differentiate(first, v))};
-    }
-  }
-  double operator()(int variable, int order, double t, const Mesh::Point& p) const {
-    return of_[variable][order - 1].operator()<double>([&](int v) { return v == 0 ? t : p[v - 1]; });
-  }
-
- private:
-  std::array<std::array<expressions::Evaluation, 2>, 4> of_;
-};
-
 /// Tries exact.FIELD at points of a flat mesh and at random times. A density there is a sum of its parts along t and each
 /// coordinate (schemes/README.md, Complexes), and so are its field equations:
 ///
 ///     E = [E(φ_t, φ_tt) − E(0)] + E(φ) + Σ_a [E(φ, ∂_aφ, ∂_a²φ) − E(φ)]
 ///
 /// On a surface in space the derivatives along it are not those of the coordinates.
-void require_solution(const ComplexScene& c, const ParameterValues& parameters) {
+void require_solution(const ComplexScene& c) {
   const Mesh& mesh = c.space->mesh;
   const auto equations = FieldEquations::of(c.theory->density());
   if (!equations || equations->order() != 2 || c.theory->constraint() || mesh.coordinates() != mesh.dimension) return;
   const std::size_t d = c.fields.size();
   const bool still = c.time == MeshTime::none;
-  std::vector<DerivativesAlong> derivatives;
+  std::vector<std::vector<std::array<PlaceFormula, 2>>> derivatives;  // by t, x, y and z, of orders 1 and 2
   for (const ComplexScene::Field& field : c.fields) {
-    const std::string key = "exact." + field.name;
-    derivatives.emplace_back(*Values(c.scene.settings).text(key), numbers_of(parameters), key);
+    auto& along = derivatives.emplace_back();
+    for (int v = 0; v <= mesh.coordinates(); ++v) along.push_back({field.exact->by(v), field.exact->by(v).by(v)});
   }
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> part(0, 1);
@@ -222,8 +163,8 @@ void require_solution(const ComplexScene& c, const ParameterValues& parameters) 
       std::vector<double> jet = v == 0 ? zero : at_rest;
       jets.emplace_back(-1, jet);
       for (std::size_t a = 0; a < d; ++a) {
-        jet[(v == 0 ? 1 : 2) * d + a] = derivatives[a](v, 1, t, p);
-        jet[(v == 0 ? 3 : 5) * d + a] = derivatives[a](v, 2, t, p);
+        jet[(v == 0 ? 1 : 2) * d + a] = derivatives[a][v][0](t, p);
+        jet[(v == 0 ? 3 : 5) * d + a] = derivatives[a][v][1](t, p);
       }
       jets.emplace_back(1, std::move(jet));
     }
@@ -253,11 +194,90 @@ void require_solution(const ComplexScene& c, const ParameterValues& parameters) 
   require_solved(points, names);
 }
 
+/// The mesh, or the complex, its method and its time. Returns the shortest edge of the mesh as it is given.
+double read_space(ComplexScene& c, const Values& values, int halvings) {
+  const Settings& settings = c.scene.settings;
+  Problem& p = c.scene.problem;
+  if (!values.given("lattice.mesh"))
+    throw settings.error("lattice.mesh", "must be given with lattice.space = complex: a file, or icosahedron:4");
+  const std::string name = *values.text("lattice.mesh"), time = values.choice("lattice.time");
+  auto mesh =
+      named_mesh(name, settings.file().parent_path(), c.mesh_file, halvings, values.maybe_real("lattice.merge"));
+  if (const auto* list = std::get_if<StencilList>(&mesh)) c.stencils = std::make_unique<const StencilList>(*list);
+  if (const Setting* merge = settings.find("lattice.merge"); merge && (c.stencils || c.mesh_file.empty()))
+    c.scene.warnings.push_back(key_warning(settings, *merge, "no effect: it is for the points of a mesh file"));
+  if (c.stencils && !c.mesh_file.empty() && !find_fault(*c.stencils, c.theory->density())) require_tiling(c);
+  c.time = c.stencils        ? MeshTime::sites
+           : time == "none"  ? MeshTime::none
+           : time == "cells" ? MeshTime::cells
+                             : MeshTime::rows;
+  refuse_unread(c);
+  if (c.has_method() && !find_method(p.method).on_meshes)
+    throw settings.error("scheme.method",
+                         "needs a regular lattice; leave it out on a mesh, or use " + names_of_methods_on_meshes());
+  if (c.stencils) return 1;
+  const double edge = shortest_edge(std::get<Mesh>(mesh));
+  c.space = std::make_shared<const CellSpace>(finer_mesh(name, std::get<Mesh>(std::move(mesh)), halvings),
+                                              c.theory->shared_density(), values.choice("boundary.mesh") == "fixed",
+                                              c.theory->constraint());
+  p.lattice = Lattice::on(c.space);
+  return edge;
+}
+
+/// Steps of rows or cells, as many as the run has.
+void read_steps(ComplexScene& c, const Values& values, const MethodEntry& method, double edge, int halvings) {
+  Scene& scene = c.scene;
+  Settings& settings = scene.settings;
+  Problem& p = scene.problem;
+  constexpr auto own_steps = "lattice.time_steps";
+  p.step_control = read_step_control(settings, values);
+  if (p.step_control && !method.row_density)
+    throw settings.error(own_steps,
+                         "reversible steps are of the usual method on a mesh; leave scheme.method out, or give a list");
+  if (p.step_control && c.theory->constraint())
+    throw settings.error(own_steps, "reversible steps are for theories without a constraint; give a list of steps");
+  for (const char* other : {"lattice.courant", "lattice.time_step"})
+    if (values.given(own_steps) && !p.step_control && values.given(other)) settings.keep_one_of(own_steps, other, {});
+  if (values.given(own_steps) && c.time == MeshTime::cells)
+    throw settings.error(own_steps, "cells have steps of their own; give lattice.courant");
+  if (values.given(own_steps) && !p.step_control) p.time_steps = steps_in_turn(settings, *values.text(own_steps));
+  if (!p.time_steps.empty()) {
+    p.time_step = p.time_steps.front();
+  } else {
+    settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.4");
+    c.courant = values.given("lattice.courant") ? values.real("lattice.courant") : 0;
+    if (c.time == MeshTime::cells && c.courant == 0)
+      throw settings.error("lattice.time_step", "cells have steps of their own; give lattice.courant");
+    p.time_step = c.courant > 0 ? c.courant * edge : values.real("lattice.time_step");
+  }
+  settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 10");
+  if (values.given("run.steps")) {
+    scene.steps = values.integer("run.steps");
+  } else {
+    const double until = values.real("run.until");
+    if (until / p.time_step > 1e12) throw settings.error("run.until", "is too many steps; use less");
+    if (p.step_control) {
+      scene.until = until;
+      scene.steps = static_cast<std::int64_t>(std::ceil(until / p.time_step));
+    } else if (p.time_steps.empty()) scene.steps = std::llround(until / p.time_step);
+    else
+      for (double t = 0; t < until * (1 - 1e-12); t += p.time_steps[at(scene.steps - 1) % p.time_steps.size()])
+        ++scene.steps;
+  }
+  p.time_step = std::ldexp(p.time_step, -halvings);
+  scene.steps <<= halvings;
+}
+
 }  // namespace
 
 bool is_on_mesh(const Settings& settings) {
   const Setting* const space = settings.find("lattice.space");
   return space && space->value == "complex";
+}
+
+AnyScene read_any_scene(Settings settings) {
+  if (is_on_mesh(settings)) return read_complex_scene(std::move(settings));
+  return read_scene(std::move(settings));
 }
 
 ComplexScene read_complex_scene(Settings given, int halvings) {
@@ -269,40 +289,12 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
   for (const Parameter& key : settings.all_keys()) values.check(key);
   try {
     Problem& p = scene.problem;
-    p.theory = values.choice("theory.name");
-    const TheoryEntry& entry = find_theory(p.theory);
-    const ParameterValues parameters = read_parameters(values, entry);
-    c.theory = make_theory(entry, parameters);
-    if (!values.given("lattice.mesh"))
-      throw settings.error("lattice.mesh", "must be given with lattice.space = complex: a file, or icosahedron:4");
-    auto mesh = named_mesh(*values.text("lattice.mesh"), settings.file().parent_path(), c.mesh_file, halvings,
-                           values.maybe_real("lattice.merge"));
-    if (const auto* list = std::get_if<StencilList>(&mesh)) c.stencils = std::make_unique<const StencilList>(*list);
-    if (const Setting* merge = settings.find("lattice.merge"); merge && (c.stencils || c.mesh_file.empty()))
-      scene.warnings.push_back(key_warning(settings, *merge, "no effect: it is for the points of a mesh file"));
-    if (c.stencils && !c.mesh_file.empty() && !find_fault(*c.stencils, c.theory->density())) require_tiling(c);
-    p.method = values.choice("scheme.method");
+    p.theory = values.choice("theory.name"), p.method = values.choice("scheme.method");
+    read_parameters(values, p);
+    c.theory = make_theory(find_theory(p.theory), p.parameters);
+    const double edge = read_space(c, values, halvings);
     const MethodEntry& method = find_method(p.method);
-    p.parameters = parameters;
-    if (has_keys_on_meshes(method)) read(p.parameters, values, method.parameters);
-    refuse_unread(settings, entry, parameters, method, c.theory->fields(), values.choice("lattice.time") == "none",
-                  c.stencils != nullptr);
     const bool by_method = c.has_method();
-    if (by_method && !method.on_meshes)
-      throw settings.error("scheme.method",
-                           "needs a regular lattice; leave it out on a mesh, or use " + names_of_methods_on_meshes());
-    double edge = 1;  // of the mesh as it is given
-    if (!c.stencils) {
-      edge = shortest_edge(std::get<Mesh>(mesh));
-      c.space = std::make_unique<CellSpace>(
-          finer_mesh(*values.text("lattice.mesh"), std::get<Mesh>(std::move(mesh)), halvings),
-          c.theory->shared_density(), values.choice("boundary.mesh") == "fixed", c.theory->constraint());
-    }
-    const std::string time = values.choice("lattice.time");
-    c.time = c.stencils        ? MeshTime::sites
-             : time == "none"  ? MeshTime::none
-             : time == "cells" ? MeshTime::cells
-                               : MeshTime::rows;
     if (by_method && c.time != MeshTime::rows)
       throw settings.error("scheme.method", "is for lattice.time = rows; leave it out");
     if (c.theory->constraint() && c.time != MeshTime::rows && c.time != MeshTime::none)
@@ -317,63 +309,12 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     p.tolerance = values.real("scheme.tolerance");
     p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
     p.threads = static_cast<int>(values.integer("run.threads"));
-    p.lattice = Lattice::circle(std::max(2, c.sites()), edge * std::max(2, c.sites()));
-    p.stencil = c.mesh_in_words();
-    read_fields(c, values, parameters);
+    read_fields(c, values);
     if (c.theory->constraint()) require_constraint(c);
-    scene.fields = values.toggle("output.fields");
-    scene.figures = values.toggle("output.figures");
-    scene.figure_form = read_figure_form(settings, values);
-    scene.checkpoint = values.real("output.checkpoint");
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
-    if (c.is_one_problem()) {
-      if (c.space && c.has_solution()) require_solution(c, parameters);
-      return c;
-    }
-
-    p.step_control = read_step_control(settings, values);
-    if (p.step_control && !method.row_density)
-      throw settings.error(
-          "lattice.time_steps",
-          "reversible steps are of the usual method on a mesh; leave scheme.method out, or give a list");
-    if (p.step_control && c.time == MeshTime::cells)
-      throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
-    if (p.step_control && c.theory->constraint())
-      throw settings.error("lattice.time_steps",
-                           "reversible steps are for theories without a constraint; give a list of steps");
-    for (const char* other : {"lattice.courant", "lattice.time_step"})
-      if (values.given("lattice.time_steps") && !p.step_control && values.given(other))
-        settings.keep_one_of("lattice.time_steps", other, {});
-    c.time_steps = read_time_steps(settings, values);
-    if (!c.time_steps.empty()) {
-      if (c.time == MeshTime::cells)
-        throw settings.error("lattice.time_steps", "cells have steps of their own; give lattice.courant");
-      p.time_step = c.time_steps.front();
-    } else {
-      settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.4");
-      c.courant = values.given("lattice.courant") ? values.real("lattice.courant") : 0;
-      if (c.time == MeshTime::cells && c.courant == 0)
-        throw settings.error("lattice.time_step", "cells have steps of their own; give lattice.courant");
-      p.time_step = c.courant > 0 ? c.courant * edge : values.real("lattice.time_step");
-    }
-    settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 10");
-    if (values.given("run.steps")) {
-      scene.steps = values.integer("run.steps");
-    } else {
-      const double until = values.real("run.until");
-      if (until / p.time_step > 1e12) throw settings.error("run.until", "is too many steps; use less");
-      if (p.step_control) {
-        scene.until = until;
-        scene.steps = static_cast<std::int64_t>(std::ceil(until / p.time_step));
-      } else if (c.time_steps.empty()) scene.steps = std::llround(until / p.time_step);
-      else
-        for (double t = 0; t < until * (1 - 1e-12); t += c.time_step(scene.steps)) ++scene.steps;
-    }
-    p.time_step = std::ldexp(p.time_step, -halvings);
-    scene.steps <<= halvings;
-    scene.every = values.maybe_integer("output.every")
-                      .value_or(std::max(1LL, std::llround(static_cast<double>(scene.steps) / usual_records)));
-    if (c.has_solution()) require_solution(c, parameters);
+    if (!c.is_one_problem()) read_steps(c, values, method, edge, halvings);
+    read_output(settings, values, usual_records, scene);
+    if (c.space && c.has_solution()) require_solution(c);
   } catch (const BadInput& bad) {
     throw settings.located(bad);
   }
@@ -384,9 +325,6 @@ bool ComplexScene::has_method() const { return scene.problem.method != fallback_
 
 Problem ComplexScene::problem_on_mesh() const {
   Problem problem = scene.problem;
-  problem.lattice = Lattice::on(std::shared_ptr<const MeshSpace>(std::shared_ptr<const MeshSpace>(), space.get()));
-  problem.stencil = Problem().stencil;
-  problem.time_steps = time_steps;
   problem.circle_valued = false;  // values() are lifted to real numbers
   return problem;
 }
@@ -406,30 +344,37 @@ std::vector<double> ComplexScene::places() const {
   return all;
 }
 
-std::vector<double> ComplexScene::values() const {
+std::vector<double> ComplexScene::of_sites(double t, const std::vector<const PlaceFormula*>& formulas) const {
   std::vector<double> all;
-  if (stencils) {
-    for (const auto& [position, role, line] : stencils->sites)
-      for (const Field& f : fields)
-        all.push_back((f.exact ? *f.exact : *f.value)(position[0], {position[1], position[2], position[3]}));
-    return all;
-  }
-  for (const Mesh::Point& p : space->mesh.points)
-    for (const Field& f : fields) all.push_back(f.exact ? (*f.exact)(0, p) : (*f.value)(0, p));
+  const auto add = [&](double at_time, const Mesh::Point& p) {
+    for (const PlaceFormula* formula : formulas) all.push_back(formula ? (*formula)(at_time, p) : 0.0);
+  };
+  if (stencils)
+    for (const auto& [at, role, line] : stencils->sites) add(at[0], {at[1], at[2], at[3]});
+  else
+    for (const Mesh::Point& p : space->mesh.points) add(t, p);
+  return all;
+}
+
+std::vector<double> ComplexScene::values() const {
+  std::vector<const PlaceFormula*> formulas;
+  for (const Field& f : fields) formulas.push_back(f.exact ? &*f.exact : &*f.value);
+  std::vector<double> all = of_sites(0, formulas);
   return scene.problem.circle_valued ? lifted(space->mesh, std::move(all)) : all;
 }
 std::vector<double> ComplexScene::rates() const {
-  std::vector<double> all;
-  for (const Mesh::Point& p : space->mesh.points)
-    for (const Field& f : fields) all.push_back(f.exact ? f.exact->by_t(0, p) : f.rate ? (*f.rate)(0, p) : 0.0);
-  return all;
+  std::vector<PlaceFormula> of_solution;
+  for (const Field& f : fields)
+    if (f.exact) of_solution.push_back(f.exact->by(0));
+  std::vector<const PlaceFormula*> formulas;
+  for (std::size_t a = 0; a < fields.size(); ++a)
+    formulas.push_back(has_solution() ? &of_solution[a] : fields[a].rate ? &*fields[a].rate : nullptr);
+  return of_sites(0, formulas);
 }
 std::vector<double> ComplexScene::solution(double t) const {
-  if (stencils) return values();
-  std::vector<double> all;
-  for (const Mesh::Point& p : space->mesh.points)
-    for (const Field& f : fields) all.push_back((*f.exact)(t, p));
-  return all;
+  std::vector<const PlaceFormula*> formulas;
+  for (const Field& f : fields) formulas.push_back(&*f.exact);
+  return of_sites(t, formulas);
 }
 
 std::string ComplexScene::mesh_in_words() const {
@@ -476,7 +421,8 @@ std::string resolved_text(const ComplexScene& c) {
            if (!given) return {};
            if (key.key == "lattice.mesh" && !c.mesh_file.empty()) return c.mesh_file.string();
            if (key.key == "lattice.time_steps")
-             return c.scene.problem.step_control ? given->value : fmt::format("{}", fmt::join(c.time_steps, ", "));
+             return c.scene.problem.step_control ? given->value
+                                                 : fmt::format("{}", fmt::join(c.scene.problem.time_steps, ", "));
            return given->value;
          });
 }

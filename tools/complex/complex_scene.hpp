@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "lattice/index.hpp"
@@ -29,16 +30,14 @@ enum class MeshTime {
 struct ComplexScene {
   explicit ComplexScene(Scene given) : scene(std::move(given)) {}
 
-  /// Name, settings, steps, records. Its lattice stands for the mesh in reports: as many sites, and k the shortest edge.
-  Scene scene;
+  Scene scene;  ///< name, settings, problem, steps, records
   std::shared_ptr<const FieldTheory> theory;
-  std::unique_ptr<const CellSpace> space;       ///< a mesh; none where the complex is one of spacetime:
+  std::shared_ptr<const CellSpace> space;       ///< a mesh; none where the complex is one of spacetime:
   std::unique_ptr<const StencilList> stencils;  ///< then these
   std::filesystem::path mesh_file;              ///< empty: generated
   Tiling tiling;                                ///< of stencils of a file
   MeshTime time = MeshTime::rows;
-  std::vector<double> time_steps;  ///< of rows, over and over; empty: all scene.problem.time_step
-  double courant = 0;              ///< of cells: h_K over the shortest edge of the cell
+  double courant = 0;  ///< of cells: h_K over the shortest edge of the cell
 
   struct Field {
     std::string name;
@@ -46,12 +45,9 @@ struct ComplexScene {
   };
   std::vector<Field> fields;
 
-  double time_step(std::int64_t step) const {
-    return time_steps.empty() ? scene.problem.time_step : time_steps[at(step) % time_steps.size()];
-  }
   /// A method that is not the usual one.
   bool has_method() const;
-  /// The problem on the mesh as the space of a lattice.
+  /// The problem of rows of real numbers.
   Problem problem_on_mesh() const;
   /// Steps that the field chooses (schemes/methods/mesh_rows.hpp): of this strength, with time_step for ε.
   const std::optional<double>& step_control() const { return scene.problem.step_control; }
@@ -72,12 +68,23 @@ struct ComplexScene {
   /// "Euler characteristic 1, 1 boundary curve"; nothing of stencils that are no cells.
   std::string topology_in_words() const;
   std::string state_in_words() const;
+
+ private:
+  /// [i·d + a]; a formula that is not there is 0. Sites of a finite complex have times of their own in place of t.
+  std::vector<double> of_sites(double t, const std::vector<const PlaceFormula*>& formulas) const;
 };
 
 /// Whether a scene's space is a mesh. Throws BadScene for what is no scene.
 bool is_on_mesh(const Settings&);
 /// `halvings`: on the mesh whose sides are halved so often, with steps as much shorter, and as many more.
 ComplexScene read_complex_scene(Settings, int halvings = 0);
+
+/// A scene on a lattice, or on a mesh.
+using AnyScene = std::variant<Scene, ComplexScene>;
+AnyScene read_any_scene(Settings);
+inline Scene& common_part(Scene& scene) { return scene; }
+inline Scene& common_part(ComplexScene& c) { return c.scene; }
+
 /// The scene with what is in force: it runs again to the same bits.
 std::string resolved_text(const ComplexScene&);
 

@@ -15,7 +15,8 @@
 #include "schemes/theories/mirrored_in_time.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_checks.hpp"
-#include "tools/complex/mesh_evolution.hpp"
+#include "tools/complex/mesh_stepping.hpp"
+#include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/files/text_file.hpp"
@@ -54,7 +55,7 @@ class MeshVerification {
     if (order_.samples > 0) verdict_.checks.push_back(order_);
     if (reversal_.samples > 0) verdict_.checks.push_back(reversal_);
     if (first_step_.samples > 0) verdict_.checks.push_back(first_step_);
-    if (scene_.theory->constraint() && !scene_.time_steps.empty())
+    if (scene_.theory->constraint() && !scene_.scene.problem.time_steps.empty())
       verdict_.left_out.push_back("form of the first step: not for theories with a constraint");
     if (scene_.step_control())
       verdict_.left_out.push_back(
@@ -341,7 +342,8 @@ std::string_view without_key(const BadInput& bad) {
 
 }  // namespace
 
-ExitCode verify(const ComplexScene& c, const std::filesystem::path& folder, const std::optional<std::string>& fields) {
+ExitCode verify(const ComplexScene& c, const std::filesystem::path& folder, const std::optional<std::string>& fields,
+                const std::vector<std::string>& /*nearby*/) {
   const Interrupt interrupt;
   const Values values(c.scene.settings);
   Verdict verdict;
@@ -352,9 +354,11 @@ ExitCode verify(const ComplexScene& c, const std::filesystem::path& folder, cons
       throw BadScene(fmt::format("command line: --fields: {}: {}", *fields, without_key(bad)));
     throw c.scene.settings.located(bad);
   }
+  Subject subject = subject_of(c);
+  subject.scheme = scheme_in_words(c);
   make_results_folder(folder);
-  write_text_file(folder / "verify.json", verdict_json(c.scene, verdict));
-  fmt::print("{}{}: verify.json\n", verdict_report(c.scene, verdict), folder.string());
+  write_text_file(folder / "verify.json", verdict_json(subject, c.scene, verdict));
+  fmt::print("{}{}: verify.json\n", verdict_report(subject, c.scene, verdict), folder.string());
   if (verdict.status == "interrupted") return ExitCode::interrupted;
   return verdict.passed() ? ExitCode::done : ExitCode::check_failed;
 }

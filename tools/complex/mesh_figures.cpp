@@ -9,8 +9,8 @@
 
 #include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
-#include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_files.hpp"
+#include "tools/complex/mesh_stepping.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/files/text_file.hpp"

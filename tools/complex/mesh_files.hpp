@@ -1,40 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <filesystem>
-#include <memory>
+#include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "tools/complex/complex_scene.hpp"
-#include "tools/files/fields_file.hpp"
 
 namespace delf {
 
-class SavedState;
+/// The cells as /cells of fields.h5 has them: the points of each, or the sites of each stencil, −1 where it has fewer.
+struct ListedCells {
+  explicit ListedCells(const ComplexScene&);
+  int corners = 0;  ///< columns
+  std::vector<std::int32_t> points;
+};
 
 /// Whether there is a fields.xdmf: XDMF takes two or three coordinates, of space, or t, x and y of a finite complex.
 bool has_xdmf(const ComplexScene&);
 
-/// fields.h5 of a scene on a mesh, and fields.xdmf and frames.h5 beside it, which ParaView opens.
-class MeshFiles {
- public:
-  MeshFiles(const ComplexScene&, const std::filesystem::path& folder, std::int64_t frames, bool node_times = false,
-            const WrittenPart& kept = {});
-  /// Without multipliers, where the theory has some, they are 0.
-  void append(double time, std::span<const double> values, std::span<const double> multipliers = {},
-              std::span<const double> node_times = {});
-  /// See FieldsFile.
-  const WrittenPart& flush(bool sync) { return file_->flush(sync); }
-  void visit(SavedState&);
-  void close();
-
- private:
-  std::string xdmf() const;
-
-  const ComplexScene& scene_;
-  std::filesystem::path folder_;
-  int corners_;
-  std::vector<double> times_;
-  std::unique_ptr<FieldsFile> file_;
-};
+/// fields.xdmf, by which ParaView opens the frames of fields.h5 at these times; they are in frames.h5 one by one.
+std::string xdmf(const ComplexScene&, std::span<const double> times);
 
 }  // namespace delf

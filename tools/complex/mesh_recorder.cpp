@@ -6,94 +6,100 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lattice/error.hpp"
+#include "lattice/index.hpp"
+#include "schemes/stepping/saved_state.hpp"
+#include "tools/complex/mesh_files.hpp"
+#include "tools/files/frames_file.hpp"
+#include "tools/files/text_file.hpp"
+
 namespace delf {
 namespace {
 
-std::vector<std::string> further_columns(const ComplexScene& c) {
-  std::vector<std::string> names;
-  if (c.theory->constraint()) names.emplace_back("constraint");
+/// The columns of recorded rows. Without multipliers, where the theory has some, they are 0.
+RowNames names_of(const ComplexScene& c) {
+  RowNames names;
+  names.of[Role::field].clear();
+  for (const auto& field : c.fields) names.of[Role::field].push_back(field.name);
+  if (c.theory->constraint()) names.of[Role::multiplier] = {"lambda"}, names.further.emplace_back("constraint");
   if (!c.is_one_problem())
-    for (const LinearSymmetry& s : c.theory->symmetries()) names.push_back(s.name);
+    for (const LinearSymmetry& s : c.theory->symmetries()) names.further.push_back(s.name);
   return names;
+}
+
+MeshOfFile mesh_of_file(const ComplexScene& c, const ListedCells& cells) {
+  return {c.coordinates(), cells.points, cells.corners, c.time == MeshTime::cells};
 }
 
 }  // namespace
 
 MeshRecorder::MeshRecorder(const ComplexScene& c, const std::filesystem::path& folder, Outcome& outcome,
                            const std::optional<Written>& kept)
-    : c_(c), outcome_(outcome), film_(c) {
-  const std::filesystem::path series = folder / "series.csv";
-  if (kept) require_part(series, kept->series);
-  const std::int64_t expected = c.scene.every > 0 ? c.scene.steps / c.scene.every + 2 : 1;
-  if (c.scene.fields)
-    files_.emplace(c, folder, expected, c.time == MeshTime::cells, kept ? kept->fields : WrittenPart{});
-  if (kept) series_.emplace(series, kept->series);
-  else series_.emplace(series, further_columns(c));
-}
+    : Recorder(c.scene, folder, resolved_text(c), 0, names_of(c), c.places(), mesh_of_file(c, ListedCells(c)), kept),
+      c_(c),
+      folder_(folder),
+      outcome_(outcome),
+      frames_(c) {}
 
 void MeshRecorder::record(const MeshRow& r, std::span<const SlabEnergy> slabs) {
-  Outcome& o = outcome_;
   require_finite(r);
-  if (c_.stencils && !std::ranges::all_of(r.values, [](double y) { return std::isfinite(y); }))
-    throw NotFinite("a value is not finite; use smaller data, or a finer complex");
-  ++o.records;
-  if (std::isnan(o.energy_initial)) o.energy_initial = slabs.empty() ? r.energy : slabs.front().energy;
+  ++outcome_.records;
+  if (std::isnan(outcome_.energy_initial)) outcome_.energy_initial = slabs.empty() ? r.energy : slabs.front().energy;
   if (slabs.empty()) note(r);
   MeshRow line = r;
   for (const SlabEnergy& slab : slabs) ++line.row, line.time = slab.time, line.energy = slab.energy, note(line);
-  if (files_) files_->append(r.time, r.values, r.multipliers, r.node_times);
-  if (c_.scene.figures) film_.add(r.row, r.time, r.values);
+  RecordedRow row;
+  row[Role::field].assign(r.values.begin(), r.values.end());
+  row[Role::multiplier].assign(r.multipliers.begin(), r.multipliers.end());
+  if (c_.theory->constraint()) row[Role::multiplier].resize(c_.sites(), 0.0);
+  put(r.time, row, {}, r.node_times);
+  times_.push_back(r.time);
+  if (c_.scene.figures) frames_.add(r.row, r.time, r.values);
+  outcome_.energy_error_max = largest_energy_error();
 }
 
 void MeshRecorder::watch(const MeshRow& r) {
   require_finite(r);
-  take(r);
+  Recorder::watch(r.time, take(r));
+  outcome_.energy_error_max = largest_energy_error();
 }
 
 void MeshRecorder::require_finite(const MeshRow& r) const {
-  if (c_.stencils || std::isfinite(r.energy)) return;
-  throw NotFinite(
-      fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", r.row, r.time));
+  if (c_.stencils && !std::ranges::all_of(r.values, [](double y) { return std::isfinite(y); }))
+    throw NotFinite("a value is not finite; use smaller data, or a finer complex");
+  if (!c_.stencils && !std::isfinite(r.energy))
+    throw NotFinite(
+        fmt::format("row {}, t = {:.6g}: the energy is not finite; use smaller fields or steps", r.row, r.time));
 }
 
 double MeshRecorder::take(const MeshRow& r) {
   Outcome& o = outcome_;
-  const double error =
-      o.energy_initial == 0 ? Outcome::unknown : (r.energy - o.energy_initial) / std::abs(o.energy_initial);
-  if (std::isfinite(error)) energy_errors_.append(r.time, error);
-  if (!(std::abs(error) <= o.energy_error_max)) o.energy_error_max = std::abs(error);
   if (std::isfinite(r.residual)) o.residual_max = std::max(o.residual_max, r.residual);
   else if (c_.time == MeshTime::cells) o.residual_max = r.residual;  // of asynchronous steps it is not measured
   if (c_.theory->constraint() && !(r.constraint <= o.constraint_max)) o.constraint_max = r.constraint;
   for (std::size_t n = 0; n < r.momenta.size(); ++n) o.conserved[n].take(r.momenta[n].sum, r.momenta[n].absolute);
-  return error;
+  return o.energy_initial == 0 ? Outcome::unknown : (r.energy - o.energy_initial) / std::abs(o.energy_initial);
 }
 
 void MeshRecorder::note(const MeshRow& r) {
   outcome_.energy_final = r.energy;
-  const double error = take(r);
-  Record record{r.row, r.time, r.energy, error, Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}};
+  Record record{r.row, r.time, r.energy, take(r), Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}};
   if (c_.theory->constraint()) record.further.push_back(r.constraint);
   for (const Balance& momentum : r.momenta) record.further.push_back(momentum.sum);
-  series_->append(record);
-}
-
-RunFiles::Written MeshRecorder::flush(bool sync) {
-  Written written;
-  if (files_) written.fields = files_->flush(sync);
-  written.series = series_->flush(sync);
-  return written;
+  Recorder::note(record);
 }
 
 void MeshRecorder::visit(SavedState& state) {
-  if (files_) files_->visit(state);
-  energy_errors_.visit(state);
-  film_.visit(state);
+  Recorder::visit(state);
+  state("times of frames", times_);
+  frames_.visit(state);
 }
 
 void MeshRecorder::close() {
-  series_->close();
-  if (files_) files_->close();
+  Recorder::close();
+  if (!c_.scene.fields || !has_xdmf(c_)) return;
+  write_frames_file(folder_, names_of(c_).of[Role::field], times_.size(), at(c_.sites()));
+  write_text_file(folder_ / "fields.xdmf", xdmf(c_, times_));
 }
 
 }  // namespace delf

@@ -1,23 +1,38 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "schemes/complex/slab_energy.hpp"
-#include "tools/complex/mesh_evolution.hpp"
+#include "schemes/verify/check.hpp"
 #include "tools/complex/mesh_figures.hpp"
-#include "tools/complex/mesh_files.hpp"
-#include "tools/figures/trace.hpp"
-#include "tools/files/series_file.hpp"
-#include "tools/run/run_files.hpp"
+#include "tools/outcome/outcome.hpp"
+#include "tools/run/recorder.hpp"
 
 namespace delf {
 
-/// Where the recorded rows of a mesh go: series.csv; fields.h5 and the film for figures, if the scene wants them; and what
-/// the outcome says of energies and residuals.
-class MeshRecorder final : public RunFiles {
+/// A row of a mesh, and what is said of it.
+struct MeshRow {
+  std::int64_t row = 0;
+  double time = 0;
+  std::span<const double> values;  ///< [i·d + a], until the next step
+  double energy = 0;
+  int iterations = 0;
+  double residual = 0;
+  std::span<const double> node_times = {};  ///< of asynchronous cells
+  std::vector<Balance> momenta = {};        ///< of the theory's symmetries: what a cut behind the row holds
+  double constraint = Outcome::unknown;     ///< the largest |G|
+  /// Those found with the row: of the row before, or of a field at rest its own. Empty: none yet, or no constraint.
+  std::span<const double> multipliers = {};
+};
+
+/// The recorder of a run on a mesh: its files are those of any run, with the cells in fields.h5 and fields.xdmf beside it,
+/// which ParaView opens. The outcome takes the energies and residuals of the rows from it.
+class MeshRecorder final : public Recorder {
  public:
-  /// With `kept`, the files of an earlier run are gone on with from there: see Recorder.
   MeshRecorder(const ComplexScene&, const std::filesystem::path& folder, Outcome&,
                const std::optional<Written>& kept = {});
 
@@ -25,11 +40,9 @@ class MeshRecorder final : public RunFiles {
   void record(const MeshRow&, std::span<const SlabEnergy> slabs = {});
   /// A row that is measured and not recorded.
   void watch(const MeshRow&);
-  Written flush(bool sync) override;
   void visit(SavedState&) override;
-  void close();
-  const MeshFilm& film() const { return film_; }
-  const Trace& energy_errors() const { return energy_errors_; }
+  void close() override;
+  const MeshFilm& frames() const { return frames_; }
 
  private:
   void require_finite(const MeshRow&) const;
@@ -38,11 +51,10 @@ class MeshRecorder final : public RunFiles {
   void note(const MeshRow&);
 
   const ComplexScene& c_;
+  std::filesystem::path folder_;
   Outcome& outcome_;
-  MeshFilm film_;
-  Trace energy_errors_;
-  std::optional<SeriesFile> series_;  ///< always there
-  std::optional<MeshFiles> files_;
+  MeshFilm frames_;
+  std::vector<double> times_;  ///< of the frames of fields.h5
 };
 
 }  // namespace delf

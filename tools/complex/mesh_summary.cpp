@@ -45,19 +45,27 @@ Subject subject_of(const ComplexScene& c) {
   return subject;
 }
 
-void measure_error(const ComplexScene& c, std::span<const double> values, double t, Outcome& o) {
-  if (!c.has_solution()) return;
-  const std::vector<double> exact = c.solution(t);
+std::string scheme_in_words(const ComplexScene& c) {
+  const double h = c.scene.problem.time_step, k = c.space ? shortest_edge(c.space->mesh) : 1;
+  return fmt::format("{}, N = {}, h/k = {:.4g}, h = {:.6g}",
+                     c.has_method() ? scheme_label(c.scene.problem) : c.mesh_in_words(), c.sites(), h / k, h);
+}
+
+FieldError error_on(const ComplexScene& c, std::span<const double> values, std::span<const double> others) {
   const std::size_t d = c.fields.size();
-  o.error_linf = 0;
-  double sum = 0;
-  for (std::size_t n = 0; n < exact.size(); ++n) {
-    const double apart = values[n] - exact[n];
-    const double error = std::abs(c.scene.problem.circle_valued ? wrap(apart) : apart);
-    o.error_linf = std::max(o.error_linf, error);
+  double largest = 0, sum = 0;
+  for (std::size_t n = 0; n < std::min(values.size(), others.size()); ++n) {
+    const double apart = values[n] - others[n], error = std::abs(c.scene.problem.circle_valued ? wrap(apart) : apart);
+    largest = std::max(largest, error);
     sum += (c.space ? c.space->masses[n / d] : 1 / static_cast<double>(c.sites())) * error * error;
   }
-  o.error_l2 = std::sqrt(sum);
+  return {largest, std::sqrt(sum)};
+}
+
+void measure_error(const ComplexScene& c, std::span<const double> values, double t, Outcome& o) {
+  if (!c.has_solution()) return;
+  const FieldError error = error_on(c, values, c.solution(t));
+  o.error_linf = error.linf, o.error_l2 = error.l2;
 }
 
 }  // namespace delf

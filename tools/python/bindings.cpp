@@ -505,8 +505,8 @@ PYBIND11_MODULE(_delf, m) {
       .def(
           "check",
           [](const Settings& s) {
-            if (is_on_mesh(s)) return read_complex_scene(s).scene.warnings;
-            return read_scene(s).warnings;
+            AnyScene any = read_any_scene(s);
+            return std::visit([](auto& scene) { return common_part(scene).warnings; }, any);
           },
           "Reads all values. Raises BadInput; returns warnings.")
       .def("keys", [](const Settings& s) { return list_of(s.all_keys()); })

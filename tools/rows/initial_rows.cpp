@@ -16,6 +16,7 @@
 #include "schemes/theories/field_theory.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/rows/exact_solution.hpp"
+#include "tools/scene/mesh_methods.hpp"
 
 namespace delf {
 
@@ -271,15 +272,14 @@ void InitialRows::start(Simulation& simulation) const {
           step && !(std::abs(*step - h) <= 1e-9 * h + 1e-15 * std::abs(*file_->time(scene_.initial_frame + j))))
         throw BadInput(
             "initial.frame",
-            fmt::format(
-                "frames {} and {} of the file are {:.12g} apart, and the time step is {:.10g}; use "
-                "lattice.time_step = {:.12g}, {}or record with output.every = 1, or start from values "
-                "and rates by initial.time_step = {:.12g}",
-                scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
-                find_method(scene_.problem.method).row_density && !find_method(scene_.problem.method).reads_stencil
-                    ? "lattice.time_steps = reversible if the field chose the steps of the file, "
-                    : "",
-                *step));
+            fmt::format("frames {} and {} of the file are {:.12g} apart, and the time step is {:.10g}; use "
+                        "lattice.time_step = {:.12g}, {}or record with output.every = 1, or start from values "
+                        "and rates by initial.time_step = {:.12g}",
+                        scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
+                        has_reversible_steps(find_method(scene_.problem.method))
+                            ? "lattice.time_steps = reversible if the field chose the steps of the file, "
+                            : "",
+                        *step));
     simulation.start(rows);
   } catch (const BadInput& bad) {
     throw scene_.settings.located(bad);

@@ -7,32 +7,52 @@
 #include "schemes/stepping/saved_state.hpp"
 
 namespace delf {
+namespace {
+
+std::vector<double> positions_of(const Lattice& lattice) {
+  std::vector<double> positions;
+  for (int i = 0; i < lattice.sites(); ++i) positions.push_back(lattice.position(i));
+  return positions;
+}
+
+}  // namespace
 
 Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, const std::string& resolved_scene,
                    int winding, const RowNames& names, const std::optional<Written>& kept)
+    : Recorder(scene, folder, resolved_scene, winding, names, positions_of(scene.problem.lattice), {}, kept) {
+  if (scene.figures) film_.emplace(scene.problem.lattice, names.drawn().size());
+}
+
+Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, const std::string& resolved_scene,
+                   int winding, const RowNames& names, std::span<const double> places, const MeshOfFile& mesh,
+                   const std::optional<Written>& kept)
     : names_(names) {
   const std::filesystem::path series = folder / "series.csv";
   if (kept) require_part(series, kept->series);
-  const Lattice& lattice = scene.problem.lattice;
   const std::int64_t expected = scene.every == 0 ? 1 : scene.steps / scene.every + 2;
-  if (scene.fields) {
-    std::vector<double> space;
-    for (int i = 0; i < lattice.sites(); ++i) space.push_back(lattice.position(i));
-    fields_.emplace(folder / "fields.h5", space, expected, resolved_scene, winding, names, MeshOfFile{},
+  if (scene.fields)
+    fields_.emplace(folder / "fields.h5", places, expected, resolved_scene, winding, names, mesh,
                     kept ? kept->fields : WrittenPart{});
-  }
   if (kept) series_.emplace(series, kept->series);
   else series_.emplace(series, names.further);
-  if (scene.figures) film_.emplace(lattice, names.drawn().size());
 }
 
 void Recorder::append(const Record& record, const RecordedRow& row, const RecordedDatasets& datasets,
                       std::span<const double> rates) {
   if (seen_) seen_(record, row, datasets), ++seen_records_;
-  if (series_) series_->append(record);
-  if (fields_) fields_->append(record.time, row, datasets);
+  note(record);
+  put(record.time, row, datasets);
   if (film_) film_->append(record.time, drawn(row), names_.drawn_mesh() ? std::span<const double>() : rates);
+}
+
+void Recorder::note(const Record& record) {
+  if (series_) series_->append(record);
   watch(record.time, record.energy_error);
+}
+
+void Recorder::put(double time, const RecordedRow& row, const RecordedDatasets& datasets,
+                   std::span<const double> node_times) {
+  if (fields_) fields_->append(time, row, datasets, node_times);
 }
 
 void Recorder::watch(double time, double energy_error) {

@@ -20,25 +20,32 @@ namespace delf {
 
 /// The writer of a run's recorded rows: series.csv; fields.h5 and the film for figures, if the scene wants them. Or, in
 /// memory, to a function.
-class Recorder final : public RunFiles {
+class Recorder : public RunFiles {
  public:
   /// Opens the files; those of an earlier run, `kept`, are continued from there. Throws BadScene, and changes no file,
-  /// where they do not hold that much, or other values.
+  /// where they do not hold that much, or other values. On a lattice:
   Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
            const RowNames&, const std::optional<Written>& kept = {});
+  /// On any sites, at these places. There is no film.
+  Recorder(const Scene&, const std::filesystem::path& folder, const std::string& resolved_scene, int winding,
+           const RowNames&, std::span<const double> places, const MeshOfFile&, const std::optional<Written>& kept);
   using Seen = std::function<void(const Record&, const RecordedRow&, const RecordedDatasets&)>;
   /// Writes no file: each recorded row is given to `seen`, after those that were `kept` of an earlier run.
   Recorder(const RowNames& names, Seen seen, const Written& kept)
       : names_(names), seen_(std::move(seen)), seen_records_(kept.series.size) {}
 
-  /// `rates`: of the fields, where they are known.
+  /// A recorded row, in all of the files. `rates`: of the fields, where they are known.
   void append(const Record&, const RecordedRow&, const RecordedDatasets&, std::span<const double> rates = {});
+  /// A line of series.csv alone.
+  void note(const Record&);
+  /// A frame of fields.h5 alone. `node_times`: where sites have times of their own.
+  void put(double time, const RecordedRow&, const RecordedDatasets& = {}, std::span<const double> node_times = {});
   /// The energy of a row that is not recorded.
   void watch(double time, double energy_error);
   Written flush(bool sync) override;
   void visit(SavedState&) override;
   /// Writes all buffered rows. A failure does not prevent the other files; the first one is then thrown.
-  void close();
+  virtual void close();
 
   const Film* film() const noexcept { return film_ ? &*film_ : nullptr; }
   const Trace& energy_errors() const noexcept { return energy_errors_; }

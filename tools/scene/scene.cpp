@@ -22,6 +22,8 @@
 #include "tools/scene/file_beside.hpp"
 #include "tools/scene/key_warning.hpp"
 #include "tools/scene/keys.hpp"
+#include "tools/scene/keys_of_spaces.hpp"
+#include "tools/scene/scene_parts.hpp"
 #include "tools/scene/values.hpp"
 
 namespace delf {
@@ -30,7 +32,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double usual_records = 400;
+constexpr int usual_records = 400;
 
 // The name that the scene gives for what declares keys: its theory, its method, or its state.
 const std::string& chosen(const Scene& scene, DeclaredBy kind) {
@@ -41,6 +43,12 @@ const std::string& chosen(const Scene& scene, DeclaredBy kind) {
 Wall wall(const Values& values, std::string_view key) {
   const std::string wall = values.choice(key);
   return wall == "natural" ? Wall::natural : wall == "clamped" ? Wall::clamped : Wall::fixed;
+}
+
+SpaceKind kind_of(const Lattice& lattice) {
+  return lattice.is_circle()                  ? SpaceKind::circle
+         : lattice.space() == Space::interval ? SpaceKind::interval
+                                              : SpaceKind::point;
 }
 
 Space read_space(const Values& values) {
@@ -60,26 +68,6 @@ Lattice read_lattice(const Settings& settings, const Values& values) {
   if (!std::isnormal(lattice.space_step()))
     throw settings.error("lattice.length", "L/N is too small for double precision; use a longer one");
   return lattice;
-}
-
-// Reads what the scene gives, of all theories and methods (others may run in its place); those of its own are complete.
-void read_parameters(const Values& values, Problem& p) {
-  for (const Declaration& declaration : declarations()) {
-    if (declaration.kind == DeclaredBy::state) continue;
-    const std::string& name = declaration.kind == DeclaredBy::theory ? p.theory : p.method;
-    for (const Parameter& parameter : declaration.parameters)
-      // a key that is not given, and has no fallback, is left to what declares it
-      if (name == declaration.name && (values.given(parameter.key) || parameter.otherwise.empty()))
-        p.parameters[parameter.key] = values.parameter(parameter);
-      else if (values.given(parameter.key) && !p.parameters.has(parameter.key))
-        p.parameters[parameter.key] = values.parameter(parameter);
-  }
-  for (const char* unit : {"theory.speed", "theory.scale"})
-    if (values.given(unit)) p.parameters[unit] = values.real(unit);
-  const TheoryEntry& theory = find_theory(p.theory);
-  if (theory.further)
-    for (const Parameter& parameter : theory.further(p.parameters))
-      p.parameters[parameter.key] = values.parameter(parameter);
 }
 
 Problem read_problem(const Settings& settings, const Values& values) {
@@ -222,6 +210,34 @@ std::string why_not_read(const Scene& scene, std::string_view key) {
 
 }  // namespace
 
+void read_parameters(const Values& values, Problem& p) {
+  for (const Declaration& declaration : declarations()) {
+    if (declaration.kind == DeclaredBy::state) continue;
+    const std::string& name = declaration.kind == DeclaredBy::theory ? p.theory : p.method;
+    for (const Parameter& parameter : declaration.parameters)
+      // a key that is not given, and has no fallback, is left to what declares it
+      if (name == declaration.name && (values.given(parameter.key) || parameter.otherwise.empty()))
+        p.parameters[parameter.key] = values.parameter(parameter);
+      else if (values.given(parameter.key) && !p.parameters.has(parameter.key))
+        p.parameters[parameter.key] = values.parameter(parameter);
+  }
+  for (const char* unit : {"theory.speed", "theory.scale"})
+    if (values.given(unit)) p.parameters[unit] = values.real(unit);
+  const TheoryEntry& theory = find_theory(p.theory);
+  if (theory.further)
+    for (const Parameter& parameter : theory.further(p.parameters))
+      p.parameters[parameter.key] = values.parameter(parameter);
+}
+
+void read_output(const Settings& settings, const Values& values, int usual, Scene& scene) {
+  const auto every = std::max(1LL, std::llround(static_cast<double>(scene.steps) / usual));
+  scene.every = values.maybe_integer("output.every").value_or(every);
+  scene.figures = values.toggle("output.figures");
+  scene.figure_form = read_figure_form(settings, values);
+  scene.fields = values.toggle("output.fields");
+  scene.checkpoint = values.real("output.checkpoint");
+}
+
 std::optional<double> read_step_control(const Settings& settings, const Values& values) {
   if (values.text("lattice.time_steps") == "reversible") return values.real("lattice.step_control");
   if (values.given("lattice.step_control"))
@@ -277,12 +293,7 @@ Scene read_scene(Settings given) {
   scene.start = read_start(settings, values, scene.problem);
   scene.steps = read_steps(settings, values, scene.problem.time_step);
   if (scene.problem.step_control && !values.given("run.steps")) scene.until = values.real("run.until");
-  const auto every_default = std::llround(static_cast<double>(scene.steps) / usual_records);
-  scene.every = values.maybe_integer("output.every").value_or(std::max(1LL, every_default));
-  scene.figures = values.toggle("output.figures");
-  scene.figure_form = read_figure_form(settings, values);
-  scene.fields = values.toggle("output.fields");
-  scene.checkpoint = values.real("output.checkpoint");
+  read_output(settings, values, usual_records, scene);
   scene.times = values.times("output.times");
   scene.section = values.text("output.section").value_or("");
   const auto warn = [&](const Setting& s, const std::string& why) {
@@ -306,23 +317,13 @@ Scene read_scene(Settings given) {
 }
 
 std::string why_without_effect(const Scene& scene, std::string_view key) {
-  const bool circle = scene.problem.lattice.is_circle(), point = scene.problem.lattice.space() == Space::point;
   if (const auto unread = why_not_read(scene, key); !unread.empty()) return unread;
   if (key.starts_with("stencil.") && scene.problem.stencil != stencil_as_text)
     return fmt::format("lattice.stencil = {} is in force", scene.problem.stencil);
-  if ((key == "lattice.sites" || key == "lattice.length") && point) return "a point has neither length nor sites";
   if ((key == "output.format" || key == "output.titles") && !scene.figures) return "output.figures = off is in force";
-  if (key == "output.section" && !point) return "sections are of mechanics, lattice.space = point";
   const bool of_steps = key == "lattice.time_steps" || key == "lattice.step_control";
-  if (key == "lattice.mesh" || key == "lattice.merge" || key == "lattice.time" ||
-      (of_steps && !scene.problem.step_control) || key == "boundary.mesh")
-    return "only lattice.space = complex has a mesh";
-  if (key == "boundary.winding" && point) return "a point has no winding";
-  if (key == "boundary.winding" && !circle) return "an interval has no winding";
-  if (key == gain_key && !circle) return "only a circle is gone around";
-  if ((key == "boundary.left" || key == "boundary.right") && point) return "a point has no walls";
-  if ((key == "boundary.left" || key == "boundary.right") && circle) return "a circle has no walls";
-  return "";
+  if (of_steps && scene.problem.step_control) return {};  // of moving sites
+  return why_unread(kind_of(scene.problem.lattice), key);
 }
 
 }  // namespace delf

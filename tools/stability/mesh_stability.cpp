@@ -5,22 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "lattice/index.hpp"
-#include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "tools/files/text_file.hpp"
+#include "tools/outcome/findings_json.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/progress.hpp"
 #include "tools/report/text_columns.hpp"
-#include "tools/scene/values.hpp"
+#include "tools/scene/mesh_methods.hpp"
 #include "tools/stability/point_limits.hpp"
 
 namespace delf {
@@ -73,8 +72,7 @@ std::vector<NamedScheme> schemes_of(const ComplexScene& c) {
   if (c.has_method()) schemes.push_back({scheme_label(point), point});
   point.parameters = {};
   for (const NamedScheme& scheme : named_schemes(point))
-    if (const MethodEntry& m = find_method(scheme.problem.method); m.on_meshes && !m.reads_stencil)
-      schemes.push_back(scheme);
+    if (is_named_on_meshes(find_method(scheme.problem.method))) schemes.push_back(scheme);
   return schemes;
 }
 
@@ -82,18 +80,14 @@ std::string in_words(double limit) { return std::isinf(limit) ? "none" : fmt::fo
 
 }  // namespace
 
-ExitCode mesh_stability(const ComplexScene& c, const std::filesystem::path& folder) {
+ExitCode stability(const ComplexScene& c, const std::filesystem::path& folder) {
   const Interrupt interrupt;
   if (c.time != MeshTime::rows)
     throw c.scene.settings.error("lattice.time", "limits are those of rows; leave it out for delf stability");
   if (c.theory->constraint())
     throw c.scene.settings.error("theory.name",
                                  "limits on a mesh are of theories without a constraint; choose another");
-  const Values values(c.scene.settings);
-  PointRequest request;
-  request.agreement = values.real("stability.agreement");
-  request.steps = static_cast<int>(values.integer("stability.steps"));
-  if (values.choice("stability.fault") == "limit") request.theory_factor = 1.05;
+  const PointRequest request = point_request(c.scene);
   Problem usual = c.problem_on_mesh();
   usual.method = Problem().method;
   const auto longest = longest_step(Simulation(usual).evolution().system());
@@ -119,29 +113,19 @@ ExitCode mesh_stability(const ComplexScene& c, const std::filesystem::path& fold
     findings.push_back(std::move(f));
     progress.at(static_cast<std::int64_t>(findings.size()));
   }
-  nlohmann::ordered_json limits = nlohmann::ordered_json::array();
   std::vector<std::vector<std::string>> rows;
-  for (const MeshFinding& f : findings) {
-    const auto number = [](double x) {
-      return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
-    };
-    limits.push_back({{"scheme", f.oscillator.scheme},
-                      {"frequency_step", number(f.oscillator.theory)},
-                      {"time_step", number(f.limit)},
-                      {"unlimited", std::isinf(f.limit)},
-                      {"order", number(f.oscillator.order)},
-                      {"agrees", f.agrees}});
+  for (const MeshFinding& f : findings)
     rows.push_back({f.oscillator.scheme, fmt::format("{:.2f}", f.oscillator.order), in_words(f.oscillator.theory),
                     in_words(f.limit), f.agrees ? "" : "FAILED"});
-  }
+  Json json = json_head(c.scene);
+  json["largest_frequency"] = omega;
+  json["agreement"] = request.agreement;
+  json["limits"] = json_list(findings, [](const MeshFinding& f) {
+    return Json{{"scheme", f.oscillator.scheme},    {"frequency_step", f.oscillator.theory}, {"time_step", f.limit},
+                {"unlimited", std::isinf(f.limit)}, {"order", f.oscillator.order},           {"agrees", f.agrees}};
+  });
   make_results_folder(folder);
-  write_text_file(folder / "stability.json", nlohmann::ordered_json{{"version", DELF_VERSION},
-                                                                    {"scene", c.scene.name},
-                                                                    {"largest_frequency", omega},
-                                                                    {"agreement", request.agreement},
-                                                                    {"limits", limits}}
-                                                     .dump(2) +
-                                                 "\n");
+  write_text_file(folder / "stability.json", json_text(json));
   fmt::print("{}: {}; the largest frequency about phi = 0 is {:.6g}\n\n{}", c.scene.name, c.mesh_in_words(), omega,
              text_table({{"scheme"}, {"order", true}, {"wh", true}, {"longest h", true}, {"remarks"}}, rows, 120));
   if (Interrupt::asked()) {

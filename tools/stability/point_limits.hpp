@@ -21,6 +21,9 @@ struct PointRequest {
   double theory_factor = 1;  ///< a planted fault
 };
 
+/// The request of a scene's keys; its schemes are to be chosen still.
+PointRequest point_request(const Scene&);
+
 /// A scheme of mechanics: where it is stable on q_tt = −ω²q, how accurate it is, and what a step costs.
 struct PointFinding {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "jets/tables/named_tables.hpp"
 #include "lattice/index.hpp"
 #include "tools/files/text_file.hpp"
+#include "tools/outcome/findings_json.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/text_columns.hpp"
@@ -44,17 +44,6 @@ std::vector<NamedScheme> schemes_of(const Scene& scene, const std::vector<std::s
                                fmt::format("{} is no scheme here{}", given, suggestion(given, names)));
   }
   return chosen;
-}
-
-PointRequest request_of(const Scene& scene) {
-  const Values values(scene.settings);
-  PointRequest request;
-  request.schemes = schemes_of(scene, listed_names(scene, "stability.schemes"));
-  if (scene.settings.find("stability.most_courant")) request.most = values.real("stability.most_courant");
-  request.agreement = values.real("stability.agreement");
-  request.steps = static_cast<int>(values.integer("stability.steps"));
-  if (values.choice("stability.fault") == "limit") request.theory_factor = 1.05;
-  return request;
 }
 
 std::string limit_in_words(double limit, double most) {
@@ -97,40 +86,44 @@ std::string markdown(const std::vector<PointFinding>& findings, const PointReque
   return text;
 }
 
-nlohmann::ordered_json number(double x) {
-  if (std::isfinite(x)) return x;
-  return nullptr;
-}
-
-std::string json(const Scene& scene, const std::vector<PointFinding>& findings, const PointRequest& request) {
-  nlohmann::ordered_json limits = nlohmann::ordered_json::array();
-  for (const PointFinding& f : findings) {
-    nlohmann::ordered_json intervals = nlohmann::ordered_json::array();
-    for (const auto& [from, to] : f.stable) intervals.push_back({from, to});
-    limits.push_back({{"scheme", f.scheme},
-                      {"theory", number(f.theory)},
-                      {"observed", number(f.observed)},
-                      {"unlimited", std::isinf(f.theory)},
-                      {"stable", intervals},
-                      {"agrees", f.agrees},
-                      {"order", number(f.order)},
-                      {"microseconds", number(f.microseconds)},
-                      {"iterations", number(f.iterations)}});
-  }
-  return nlohmann::ordered_json{{"version", DELF_VERSION},
-                                {"scene", scene.name},
-                                {"most_frequency_step", request.most},
-                                {"agreement", request.agreement},
-                                {"point_limits", limits}}
-             .dump(2) +
-         "\n";
+std::string json_of(const Scene& scene, const std::vector<PointFinding>& findings, const PointRequest& request) {
+  Json json = json_head(scene);
+  json["most_frequency_step"] = request.most;
+  json["agreement"] = request.agreement;
+  json["point_limits"] = json_list(findings, [](const PointFinding& f) {
+    return Json{{"scheme", f.scheme},
+                {"theory", f.theory},
+                {"observed", f.observed},
+                {"unlimited", std::isinf(f.theory)},
+                {"stable", json_list(f.stable,
+                                     [](const auto& interval) {
+                                       return Json::array({interval.first, interval.second});
+                                     })},
+                {"agrees", f.agrees},
+                {"order", f.order},
+                {"microseconds", f.microseconds},
+                {"iterations", f.iterations}};
+  });
+  return json_text(json);
 }
 
 }  // namespace
 
+PointRequest point_request(const Scene& scene) {
+  const Values values(scene.settings);
+  PointRequest request;
+  request.agreement = values.real("stability.agreement");
+  request.steps = static_cast<int>(values.integer("stability.steps"));
+  if (values.choice("stability.fault") == "limit") request.theory_factor = 1.05;
+  return request;
+}
+
 ExitCode point_stability(const Scene& scene, const std::filesystem::path& folder) {
   const Interrupt interrupt;
-  const PointRequest request = request_of(scene);
+  PointRequest request = point_request(scene);
+  request.schemes = schemes_of(scene, listed_names(scene, "stability.schemes"));
+  if (scene.settings.find("stability.most_courant"))
+    request.most = Values(scene.settings).real("stability.most_courant");
   std::vector<PointFinding> findings;
   std::string left_out;
   int count_left_out = 0;
@@ -142,7 +135,7 @@ ExitCode point_stability(const Scene& scene, const std::filesystem::path& folder
     else left_out += "  " + shortened(found.scheme + ": " + found.left_out, 118) + "\n", ++count_left_out;
   }
   make_results_folder(folder);
-  write_text_file(folder / "stability.json", json(scene, findings, request));
+  write_text_file(folder / "stability.json", json_of(scene, findings, request));
   write_text_file(folder / "methods.md", markdown(findings, request));
   std::vector<TextColumn> columns;
   for (const std::string& heading : headings) columns.push_back({heading, heading != "scheme" && heading != "remarks"});

@@ -49,8 +49,7 @@ constexpr auto log_name = "run.log";
     _exit(static_cast<int>(ExitCode::system_failed));
   ExitCode code = ExitCode::done;
   try {
-    code = is_on_mesh(run.scene.settings) ? delf::run(read_complex_scene(run.scene.settings), folder)
-                                          : delf::run(run.scene, folder);
+    code = std::visit([&](const auto& scene) { return delf::run(scene, folder); }, read_any_scene(run.scene.settings));
   } catch (const std::exception& error) {
     std::fflush(stdout);
     fmt::print(stderr, "{}\n", error_line(error));

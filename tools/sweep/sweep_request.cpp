@@ -107,8 +107,10 @@ void read_bisection(const Scene& scene, const Values& values, SweepRequest& requ
 
 /// A mesh is not kept: a run reads it again.
 Scene scene_of(Settings settings) {
-  return is_on_mesh(settings) ? std::move(read_complex_scene(std::move(settings)).scene)
-                              : read_scene(std::move(settings));
+  AnyScene any = read_any_scene(std::move(settings));
+  Scene scene = std::visit([](auto& read) { return std::move(common_part(read)); }, any);
+  if (scene.problem.lattice.mesh()) scene.problem.lattice = Lattice::point();
+  return scene;
 }
 
 }  // namespace

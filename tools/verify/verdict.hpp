@@ -8,6 +8,7 @@
 #include "schemes/verify/check.hpp"
 #include "schemes/verify/force_share.hpp"
 #include "tools/diagnosis/finding.hpp"
+#include "tools/outcome/outcome.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
@@ -88,8 +89,8 @@ struct Verdict {
 };
 
 /// verify.json; what is not a finite number is null.
-std::string verdict_json(const Scene&, const Verdict&);
+std::string verdict_json(const Subject&, const Scene&, const Verdict&);
 /// The verdict for people: a table within 120 columns, and what each failure means.
-std::string verdict_report(const Scene&, const Verdict&);
+std::string verdict_report(const Subject&, const Scene&, const Verdict&);
 
 }  // namespace delf

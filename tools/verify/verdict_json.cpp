@@ -57,13 +57,13 @@ constexpr auto of_each = [](const auto& one) { return json_of(one); };
 
 }  // namespace
 
-std::string verdict_json(const Scene& scene, const Verdict& v) {
+std::string verdict_json(const Subject& subject, const Scene& scene, const Verdict& v) {
   const Problem& p = scene.problem;
   Json json = json_head(scene);
   json["theory"] = p.theory;
-  json["stencil"] = p.stencil;
+  json["stencil"] = subject.stencil;
   json["method"] = p.method;
-  json["sites"] = p.lattice.sites();
+  json["sites"] = subject.sites;
   json["time_step"] = p.time_step;
   json["seed"] = v.seed;
   json["subject"] = v.subject;

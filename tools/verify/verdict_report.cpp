@@ -25,12 +25,10 @@ std::string header_line(const char* name, const std::string& what) {
   return text;
 }
 
-std::string header(const Scene& scene, const Verdict& v) {
+std::string header(const Subject& subject, const Scene& scene, const Verdict& v) {
   const Problem& p = scene.problem;
-  const bool point = p.lattice.space() == Space::point;
   return fmt::format("{}: {}{}\n", scene.name, p.theory, p.circle_valued ? ", values in S1" : "") +
-         header_line("scheme", scheme_in_words(p) + (point ? "" : fmt::format(", h = {:.6g}", p.time_step))) +
-         header_line("subject", v.subject) +
+         header_line("scheme", subject.scheme) + header_line("subject", v.subject) +
          header_line("verified",
                      fmt::format("{} stencils in {}, seed {}", v.stencils, duration_in_words(v.seconds), v.seed)) +
          header_line("status", v.status);
@@ -147,13 +145,13 @@ std::string conclusion(const Verdict& v) {
 
 }  // namespace
 
-std::string verdict_report(const Scene& scene, const Verdict& v) {
+std::string verdict_report(const Subject& subject, const Scene& scene, const Verdict& v) {
   const char* how_to_read =
       "\n  Each sum is zero in theory: `largest` is the worst, over the sum of its absolute terms, 1e-16 being "
       "rounding; a check\n"
       "  passes below its tolerance, or fails and says why. What is measured below is not promised to vanish.\n";
-  return header(scene, v) + how_to_read + table_of_checks(v) + table_of_measured(v) + left_out(v) + failures(v) +
-         unmeasured(v) + diagnosis(v) + "\n" + conclusion(v);
+  return header(subject, scene, v) + how_to_read + table_of_checks(v) + table_of_measured(v) + left_out(v) +
+         failures(v) + unmeasured(v) + diagnosis(v) + "\n" + conclusion(v);
 }
 
 }  // namespace delf

@@ -68,13 +68,14 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   const Interrupt interrupt;
   // earlier results stay until there are new ones
   const auto [verdict, failure] = verified(scene, fields, nearby, [&] { make_results_folder(folder); });
-  write_text_file(folder / "verify.json", verdict_json(scene, verdict));
+  const Subject subject = subject_of(scene.problem);
+  write_text_file(folder / "verify.json", verdict_json(subject, scene, verdict));
   write_tables(folder, verdict);
   remove_figures(verdict_figure_names(), folder);
   const std::string missing =
       scene.figures ? draw_verdict(verdict, scene.name, scheme_in_words(scene.problem), scene.figure_form, folder)
                     : std::string();
-  fmt::print("{}", verdict_report(scene, verdict));
+  fmt::print("{}", verdict_report(subject, scene, verdict));
   fmt::print("{}: verify.json{}\n", folder.string(), scene.figures && missing.empty() ? " figures" : "");
   if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
   if (failure) std::rethrow_exception(failure);
@@ -109,7 +110,9 @@ VerifyInMemory verify_in_memory(const Scene& given, const std::optional<std::str
   VerifyInMemory result;
   with_memory_for(scene, [&] {
     const auto [verdict, failure] = verified(scene, fields, nearby, [] {});
-    result = {verdict.status, verdict_report(scene, verdict), verdict_json(scene, verdict), verdict.passed(), failure};
+    const Subject subject = subject_of(scene.problem);
+    result = {verdict.status, verdict_report(subject, scene, verdict), verdict_json(subject, scene, verdict),
+              verdict.passed(), failure};
     return ExitCode::done;
   });
   return result;

@@ -23,3 +23,17 @@ TEST_CASE("steps of a file that cannot be read are refused with the file and its
   CHECK(plan.code == 0);
   CHECK(contains(plan.out, "2 lengths in turn"));
 }
+
+TEST_CASE("a run with steps in turn ends with the first row that is as late as its end") {
+  const Folder folder;
+  const auto steps_until = [&](const std::string& end) {
+    const Ran plan = delf_program(
+        folder, "plan sphere --lattice.mesh=icosahedron:1 --lattice.time_steps=0.05,0.1,0.2 --run.until=" + end);
+    REQUIRE(plan.code == 0);
+    return plan.out.substr(plan.out.find("  steps ") + 13, 2);
+  };
+  CHECK(steps_until("0.05") == "1 ");
+  CHECK(steps_until("0.1") == "2 ");
+  CHECK(steps_until("0.35") == "3 ");
+  CHECK(steps_until("0.36") == "4 ");
+}

@@ -24,6 +24,9 @@ Scene scene() {
   return made;
 }
 
+std::string json_of(const Verdict& v) { return verdict_json(subject_of(scene().problem), scene(), v); }
+std::string report_of(const Verdict& v) { return verdict_report(subject_of(scene().problem), scene(), v); }
+
 Verdict verdict() {
   Verdict v;
   v.checks = {{"form formula", "a staircase of 31 sites, rows 812 … 819, local V, W", 3e-15, 1e-13, 2.5, 114, 400},
@@ -66,7 +69,7 @@ TEST_CASE("a verdict passes if every check of a finished one does, and never wit
 }
 
 TEST_CASE("verify.json has every check with all that it is made of") {
-  const auto json = nlohmann::json::parse(verdict_json(scene(), verdict()));
+  const auto json = nlohmann::json::parse(json_of(verdict()));
   for (const char* key : {"version", "scene", "theory", "stencil", "method", "sites", "time_step", "seed", "subject",
                           "status", "seconds", "stencils", "passed", "measured", "left_out", "regions", "reversal"}) {
     INFO(key);
@@ -95,7 +98,7 @@ TEST_CASE("verify.json has every check with all that it is made of") {
 }
 
 TEST_CASE("what is not a number is null in verify.json, and has failed") {
-  const auto json = nlohmann::json::parse(verdict_json(scene(), verdict()));
+  const auto json = nlohmann::json::parse(json_of(verdict()));
   CHECK(json["checks"][2]["value"].is_null());
   CHECK(json["checks"][2]["passed"] == false);
   CHECK(json["measured"][1]["order"].is_null());
@@ -103,7 +106,7 @@ TEST_CASE("what is not a number is null in verify.json, and has failed") {
 }
 
 TEST_CASE("the report of a verdict says which checks failed, and in what words, within 120 columns") {
-  const std::string report = verdict_report(scene(), verdict());
+  const std::string report = report_of(verdict());
   INFO(report);
   CHECK(contains(report, "FAILED: equations\n  The rows do not solve the equations at site 31 of row 99.\n"));
   CHECK(contains(report, "FAILED: derivatives\n"));
@@ -111,8 +114,8 @@ TEST_CASE("the report of a verdict says which checks failed, and in what words, 
   CHECK(contains(report, "2.00"));
   CHECK(contains(report, "noether: no symmetry is declared"));
   CHECK(lines(report).back() == "FAILED: 2 of 3 checks");
-  CHECK_FALSE(contains(verdict_report(scene(), good_verdict()), "FAILED"));
-  CHECK(lines(verdict_report(scene(), good_verdict())).back() == "passed: 1 of 1 checks");
+  CHECK_FALSE(contains(report_of(good_verdict()), "FAILED"));
+  CHECK(lines(report_of(good_verdict())).back() == "passed: 1 of 1 checks");
 
   Verdict wide = verdict();
   for (Check& check : wide.checks) {
@@ -122,7 +125,7 @@ TEST_CASE("the report of a verdict says which checks failed, and in what words, 
   }
   wide.subject = "rows of /" + std::string(200, 'p');
   for (const Verdict& v : {verdict(), wide})
-    for (const std::string& line : lines(verdict_report(scene(), v))) {
+    for (const std::string& line : lines(report_of(v))) {
       INFO(line);
       CHECK(columns_of(line) <= 120);
       CHECK_FALSE(line.ends_with(' '));
@@ -132,8 +135,8 @@ TEST_CASE("the report of a verdict says which checks failed, and in what words, 
 TEST_CASE("a verdict that was interrupted does not end as one that passed") {
   Verdict v = good_verdict();
   v.status = "interrupted";
-  CHECK(lines(verdict_report(scene(), v)).back() == "not finished (interrupted): 1 of 1 checks passed so far");
-  CHECK(lines(verdict_report(scene(), Verdict{})).back() == "FAILED: there was nothing to check");
+  CHECK(lines(report_of(v)).back() == "not finished (interrupted): 1 of 1 checks passed so far");
+  CHECK(lines(report_of(Verdict{})).back() == "FAILED: there was nothing to check");
 }
 
 TEST_CASE("text is wrapped at blanks, by columns and not by bytes, and words that are too long are broken") {
@@ -192,7 +195,7 @@ TEST_CASE("failures that differ in numbers alone are explained once") {
   v.checks = {{"form formula, slab", "", 1, 1e-13, 1, 1, 1, "At row 12 it is -8.06e-07."},
               {"equations", "", 1, 1e-13, 1, 1, 1, "Site 3 is wrong."},
               {"form formula, hole", "", 1, 1e-13, 1, 1, 1, "At row 5090 it is 3."}};
-  const std::string report = verdict_report(scene(), v);
+  const std::string report = report_of(v);
   CHECK(contains(report,
                  "FAILED: form formula, slab\nFAILED: form formula, hole\n  At row 12 it is -8.06e-07.\n  This is"));
   CHECK_FALSE(contains(report, "At row 5090"));
