@@ -214,6 +214,22 @@ def test_keys_that_another_command_reads_are_warned_of():
         delf.verify("kink", until=1, verify_variations=3)
 
 
+def test_the_highest_build_that_the_processor_can_take_is_chosen(monkeypatch):
+    from delf import _processor
+    built = list(_processor.LEVELS)
+    monkeypatch.setattr(_processor, "flags", lambda: _processor.LEVELS["x86-64-v3"] | {"fpu"})
+    assert _processor.level(built, "") == _processor.level(built, "x86-64-v3") == "x86-64-v3"
+    assert _processor.level(built, "x86-64") == _processor.level([], "") == ""
+    with pytest.raises(ImportError, match="^DELF_CPU = avx: this package has no such build; take x86-64 or x86-64-v3$"):
+        _processor.level(built, "avx")
+    with pytest.raises(ImportError, match="one build only"):
+        _processor.level([], "x86-64")
+    monkeypatch.setattr(_processor, "flags", lambda: _processor.LEVELS["x86-64-v3"] - {"avx2"})
+    assert _processor.level(built, "") == ""
+    with pytest.raises(ImportError, match="lacks avx2; take x86-64"):
+        _processor.level(built, "x86-64-v3")
+
+
 @pytest.mark.parametrize("scene, keys", [
     ("collision", dict(until=3)), ("kink", dict(until=3)), ("wave-map", dict(steps=30)), ("pendulum", dict(steps=100)),
     ("spherical-pendulum", dict(steps=30)), ("kink", {"until": 3, "scheme.method": "vu-quoc-li"})])

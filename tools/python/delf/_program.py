@@ -20,11 +20,11 @@ import numpy as np
 
 from . import _delf
 from ._errors import BadInput, CheckFailed, Error, NumericsFailed, SystemFailed, here
+from ._processor import CHOSEN, HERE
 from ._scene import Scene, scene_of, texts_of
 
 # Options beside **keys take Any: a dictionary of keys, **{"lattice.sites": 401}, might hold any of them to a type checker.
 SceneLike = Union[Scene, str, "os.PathLike[str]", None]
-HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 def prefix() -> str:
@@ -34,7 +34,8 @@ def prefix() -> str:
 
 def program() -> str:
     """The path of the program delf that belongs to this module."""
-    for path in (os.path.join(HERE, "prefix", "bin", "delf"), os.path.join(HERE, "bin", "delf")):
+    for folder in ([CHOSEN] if CHOSEN else []) + ["prefix", ""]:
+        path = os.path.join(HERE, folder, "bin", "delf")
         if os.path.exists(path):
             return path
     raise SystemFailed("the program delf is not in this package; install it again")
