@@ -51,25 +51,10 @@ std::filesystem::path file_of(const Arguments& arguments) {
   return find_scene(only_word(arguments, nullptr));
 }
 
-// A scene serves many commands, and has the sections of some; what is asked for beside it is meant.
-void warn_of_other_sections(const Arguments& arguments) {
-  for (const Setting& s : arguments.keys) {
-    const std::string_view section = section_of(s.key);
-    if (section == find_command(arguments.words[0]).section) continue;
-    std::vector<std::string> readers;
-    for (const Command& other : commands())
-      if (section == other.section) readers.push_back(fmt::format("`delf {}`", other.name));
-    if (!readers.empty())
-      std::fputs(fmt::format("command line: --{} = {}: warning: only {} reads it\n", s.key, s.value,
-                             fmt::join(readers, " or "))
-                     .c_str(),
-                 stderr);
-  }
-}
-
 Settings settings_of(const Arguments& arguments) {
   Settings settings = read_settings(file_of(arguments), arguments.keys);
-  warn_of_other_sections(arguments);
+  for (const std::string& line : keys_of_other_commands(arguments.words[0], arguments.keys))
+    std::fputs(("command line: --" + line + "\n").c_str(), stderr);
   return settings;
 }
 
@@ -339,6 +324,18 @@ const std::vector<Command>& table() {
 }  // namespace
 
 std::span<const Command> commands() { return table(); }
+
+std::vector<std::string> keys_of_other_commands(const std::string& command, const std::vector<Setting>& keys) {
+  std::vector<std::string> warnings;
+  for (const Setting& s : keys) {
+    const std::string_view section = section_of(s.key);
+    if (section == find_command(command).section) continue;
+    for (const Command& other : commands())
+      if (section == other.section)
+        warnings.push_back(fmt::format("{} = {}: warning: only `delf {}` reads it", s.key, s.value, other.name));
+  }
+  return warnings;
+}
 
 const Command& find_command(const std::string& name) {
   std::vector<std::string> names;

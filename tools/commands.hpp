@@ -34,6 +34,9 @@ struct Command {
 
 /// The commands of this version.
 std::span<const Command> commands();
+/// A warning for each key that another command alone reads. A scene serves many commands, and has the sections of some;
+/// what is given beside it is meant.
+std::vector<std::string> keys_of_other_commands(const std::string& command, const std::vector<Setting>& keys);
 /// Throws BadScene for an unknown name, with the nearest known one, and for a command of a later version.
 const Command& find_command(const std::string& name);
 

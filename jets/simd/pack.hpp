@@ -11,10 +11,21 @@
 
 namespace delf {
 
-#if defined(__AVX512F__)
+// A pack is one register of the widest kind; or four numbers on every x86-64 processor (DELF_FOUR_LANES), as sums and
+// solutions are rounded otherwise for another number of lanes. The macro names the registers that packs are worked on in.
+#if defined(__AVX512F__) && !defined(DELF_FOUR_LANES)
+#define DELF_ZMM
 inline constexpr int lanes = 8;
 #elif defined(__AVX__)
+#define DELF_YMM
 inline constexpr int lanes = 4;
+#elif defined(__SSE2__)
+#define DELF_XMM
+#if defined(DELF_FOUR_LANES)
+inline constexpr int lanes = 4;
+#else
+inline constexpr int lanes = 2;
+#endif
 #else
 inline constexpr int lanes = 2;
 #endif
@@ -64,38 +75,58 @@ inline Pack abs(Pack a) {
 }
 
 namespace detail {
+#if defined(DELF_XMM)
+inline __m128d register_of(const Pack& a, int first) {
+  __m128d part;
+  std::memcpy(&part, reinterpret_cast<const char*>(&a) + sizeof(double) * static_cast<unsigned>(first), sizeof part);
+  return part;
+}
+/// f of the registers of packs, one after the other.
+template <class Function, class... Packs>
+[[gnu::always_inline]] inline Pack by_registers(Function f, const Packs&... packs) {
+  Pack result;
+  for (int first = 0; first < lanes; first += 2) {
+    const __m128d part = f(register_of(packs, first)...);
+    std::memcpy(reinterpret_cast<char*>(&result) + sizeof(double) * static_cast<unsigned>(first), &part, sizeof part);
+  }
+  return result;
+}
+#endif
 // The larger or smaller of two, and b if either is NaN: what one instruction gives. (Compilers find it in a > b ? a : b
 // for some instruction sets only. Masks of all lanes spare gcc a warning about its own headers.)
 inline Pack larger(Pack a, Pack b) {
-#if defined(__AVX512F__)
+#if defined(DELF_ZMM)
   return {_mm512_maskz_max_pd(0xff, a.v, b.v)};
-#elif defined(__AVX__)
+#elif defined(DELF_YMM)
   return {_mm256_max_pd(a.v, b.v)};
-#elif defined(__SSE2__)
-  return {_mm_max_pd(a.v, b.v)};
+#elif defined(DELF_XMM)
+  return by_registers([](__m128d x, __m128d y) { return _mm_max_pd(x, y); }, a, b);
 #else
   return {a.v > b.v ? a.v : b.v};
 #endif
 }
 inline Pack smaller(Pack a, Pack b) {
-#if defined(__AVX512F__)
+#if defined(DELF_ZMM)
   return {_mm512_maskz_min_pd(0xff, a.v, b.v)};
-#elif defined(__AVX__)
+#elif defined(DELF_YMM)
   return {_mm256_min_pd(a.v, b.v)};
-#elif defined(__SSE2__)
-  return {_mm_min_pd(a.v, b.v)};
+#elif defined(DELF_XMM)
+  return by_registers([](__m128d x, __m128d y) { return _mm_min_pd(x, y); }, a, b);
 #else
   return {a.v < b.v ? a.v : b.v};
 #endif
 }
 /// Is any lane above the bound, or NaN?
 inline bool any_above(Pack x, double bound) {
-#if defined(__AVX512F__)
+#if defined(DELF_ZMM)
   return _mm512_cmp_pd_mask(x.v, Pack(bound).v, _CMP_NLE_UQ) != 0;
-#elif defined(__AVX__)
+#elif defined(DELF_YMM)
   return _mm256_movemask_pd(_mm256_cmp_pd(x.v, Pack(bound).v, _CMP_NLE_UQ)) != 0;
-#elif defined(__SSE2__)
-  return _mm_movemask_pd(_mm_cmpnle_pd(x.v, Pack(bound).v)) != 0;
+#elif defined(DELF_XMM)
+  __m128d above = _mm_setzero_pd();
+  for (int first = 0; first < lanes; first += 2)
+    above = _mm_or_pd(above, _mm_cmpnle_pd(register_of(x, first), _mm_set1_pd(bound)));
+  return _mm_movemask_pd(above) != 0;
 #else
   bool any = false;
   for (int l = 0; l < lanes; ++l) any |= !(x[l] <= bound);
@@ -106,9 +137,12 @@ inline bool any_above(Pack x, double bound) {
 
 /// The larger of two; a NaN in either stays a NaN, so that a maximum over a row shows it.
 inline Pack max_or_nan(Pack a, Pack b) {
-#if defined(__AVX512F__)
+#if defined(DELF_ZMM)
   return {_mm512_mask_max_pd(a.v, _mm512_cmp_pd_mask(a.v, a.v, _CMP_ORD_Q), a.v, b.v)};
-#else  // all bits set is a NaN
+#elif defined(DELF_XMM)  // all bits set is a NaN
+  return detail::by_registers([](__m128d x, __m128d y) { return _mm_or_pd(_mm_max_pd(x, y), _mm_cmpunord_pd(x, x)); },
+                              a, b);
+#else
   return {reinterpret_cast<Pack::Vector>(reinterpret_cast<Pack::Bits>(detail::larger(a, b).v) | (a.v != a.v))};
 #endif
 }
@@ -116,7 +150,7 @@ inline double larger_or_nan(double a, double b) { return a > b || a != a ? a : b
 /// The larger of two that are not negative; a NaN in either stays a NaN. As bits, magnitudes are in the order of integers,
 /// and NaNs above all of them: that takes turns with what is added and multiplied, which maxima of numbers would wait for.
 inline Pack larger_size(Pack a, Pack b) {
-#if defined(__AVX512F__)
+#if defined(DELF_ZMM)
   return {_mm512_castsi512_pd(_mm512_max_epu64(_mm512_castpd_si512(a.v), _mm512_castpd_si512(b.v)))};
 #else
   return max_or_nan(b, a);

@@ -113,11 +113,16 @@ inline P sine_near_zero(P r, P s, P sign) {
 
 /// c − q where the rounded number is odd, q where it is even.
 inline Pack turned_about_where_odd(Pack c, Pack q, Pack rounded_with_magic) {
-#if defined(__AVX512F__)
+#if defined(DELF_ZMM)
   const __mmask8 odd = _mm512_test_epi64_mask(_mm512_castpd_si512(rounded_with_magic.v), _mm512_set1_epi64(1));
   return {_mm512_mask_sub_pd(q.v, odd, c.v, q.v)};
+#elif defined(DELF_YMM)  // the lowest bit becomes the sign bit, which chooses
+  return {_mm256_blendv_pd(q.v, (c - q).v,
+                           reinterpret_cast<Pack::Vector>(reinterpret_cast<Pack::Bits>(rounded_with_magic.v) << 63))};
 #else
-  return {(reinterpret_cast<Pack::Bits>(rounded_with_magic.v) & 1) != 0 ? (c - q).v : q.v};
+  const Pack::Bits odd = -(reinterpret_cast<Pack::Bits>(rounded_with_magic.v) & 1);
+  return {reinterpret_cast<Pack::Vector>((odd & reinterpret_cast<Pack::Bits>((c - q).v)) |
+                                         (~odd & reinterpret_cast<Pack::Bits>(q.v)))};
 #endif
 }
 /// n + round_magic, n the integer nearest to x/π.
@@ -231,7 +236,7 @@ inline Pack power_of_2(Pack shifted) {
 
 /// y 2ⁿ for the integers n, −1076 … 1024.
 inline Pack times_power_of_2(Pack y, Pack n) {
-#if defined(__AVX512F__)
+#if defined(DELF_ZMM)
   return {_mm512_maskz_scalef_pd(0xff, y.v, n.v)};
 #else  // 2ⁿ itself may not be a number, its two halves are
   const Pack half = n * 0.5 + round_magic;
@@ -285,12 +290,12 @@ inline Pack tanh(Pack x) {
 }
 
 inline Pack sqrt(Pack x) {
-#if defined(__AVX512F__)
+#if defined(DELF_ZMM)
   return {_mm512_maskz_sqrt_pd(0xff, x.v)};
-#elif defined(__AVX__)
+#elif defined(DELF_YMM)
   return {_mm256_sqrt_pd(x.v)};
-#elif defined(__SSE2__)
-  return {_mm_sqrt_pd(x.v)};
+#elif defined(DELF_XMM)
+  return detail::by_registers([](__m128d y) { return _mm_sqrt_pd(y); }, x);
 #else
   return detail::by_lane(x, [](double y) { return std::sqrt(y); });
 #endif

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -168,6 +169,65 @@ def test_a_run_that_was_stopped_goes_on():
     assert np.array_equal(stopped.resume(until=20).fields.field, straight.fields.field)
     with pytest.raises(delf.BadInput, match="run.until"):
         straight.resume(until=3)
+
+
+def test_a_mesh_in_memory_goes_on_to_the_same_bits():
+    pytest.importorskip("h5py")
+    begun, straight = delf.run("sphere", steps=5, every=1), delf.run("sphere", steps=12, every=1)
+    longer = begun.resume(steps=12)
+    assert len(begun.series) == 6 and len(longer.series) == len(straight.series) == 13 and longer.folder is None
+    fields = longer.fields
+    del longer
+    for name in straight.fields:
+        assert np.array_equal(fields[name], straight.fields[name], equal_nan=True), name
+
+
+def test_a_sweep_keeps_its_table_where_a_run_fails():
+    unstable = dict(density="0.5*phi_t^2 - 0.5*phi_x^2 + cos(phi) - 1", stencil="triangle-vertex", space="circle", sites=100,
+                    length=10, initial_phi="exp(-(x - 5)^2)", until=40)
+    with pytest.warns(UserWarning, match="^1 of 2 runs did not end well: the column status says why$"):
+        table = delf.sweep(courant=[0.5, 1.7], **unstable)
+    assert not table.passed and list(table["status"]) == ["done", "not-finite"]
+    with pytest.raises(delf.BadInput, match="several values, as sites="):
+        delf.sweep("kink", until=1, sweep_jobs=2)
+
+
+def test_rows_start_alike_from_arrays_and_functions():
+    lattice, start = delf.circle(200, 40.0), lambda x: np.tanh((x - 10) / 2**0.5) - np.tanh((x - 30) / 2**0.5) - 1
+    rows = [delf.Scheme(_selftest.PHI_FOUR, "hexagon").on(lattice, 0.1).start(*given).row()
+            for given in ((start, 0), (start(lattice.x), np.zeros(200)), (start, lambda x: 0 * x))]
+    assert all(np.array_equal(row, rows[0]) for row in rows)
+
+
+def test_a_single_field_has_its_name_in_a_folder_too(tmp_path):
+    pytest.importorskip("h5py")
+    assert delf.run("kink", until=1, out=tmp_path / "a", output_figures=False).fields.phi.ndim == 2
+
+
+def test_keys_that_another_command_reads_are_warned_of():
+    with pytest.warns(UserWarning, match="^verify.variations = 3: warning: only `delf verify` reads it$"):
+        delf.run("kink", until=1, **{"verify.variations": 3})
+    with pytest.warns(UserWarning, match="^sweep.jobs = 2: warning: only `delf sweep` reads it$"):
+        delf.verify("kink", until=1, sweep_jobs=2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        delf.verify("kink", until=1, verify_variations=3)
+
+
+def test_the_highest_build_that_the_processor_can_take_is_chosen(monkeypatch):
+    from delf import _processor
+    built = list(_processor.LEVELS)
+    monkeypatch.setattr(_processor, "flags", lambda: _processor.LEVELS["x86-64-v3"] | {"fpu"})
+    assert _processor.level(built, "") == _processor.level(built, "x86-64-v3") == "x86-64-v3"
+    assert _processor.level(built, "x86-64") == _processor.level([], "") == ""
+    with pytest.raises(ImportError, match="^DELF_CPU = avx: this package has no such build; take x86-64 or x86-64-v3$"):
+        _processor.level(built, "avx")
+    with pytest.raises(ImportError, match="one build only"):
+        _processor.level([], "x86-64")
+    monkeypatch.setattr(_processor, "flags", lambda: _processor.LEVELS["x86-64-v3"] - {"avx2"})
+    assert _processor.level(built, "") == ""
+    with pytest.raises(ImportError, match="lacks avx2; take x86-64"):
+        _processor.level(built, "x86-64-v3")
 
 
 @pytest.mark.parametrize("scene, keys", [

@@ -75,12 +75,15 @@ py::array read_only(std::shared_ptr<const std::vector<double>> values, std::vect
   return array;
 }
 
-// A scene: a file or a shipped name, and keys over it; or keys alone, if there is no file.
-Settings settings_of(const std::string& file, const Keys& given) {
+std::vector<Setting> settings_in(const Keys& given) {
   std::vector<Setting> keys;
   for (const auto& [key, value] : given) keys.push_back({key, value, 0});
-  if (!file.empty()) return read_settings(find_scene(file), keys);
-  return made_settings("scene", {}, keys);
+  return keys;
+}
+// A scene: a file or a shipped name, and keys over it; or keys alone, if there is no file.
+Settings settings_of(const std::string& file, const Keys& given) {
+  if (!file.empty()) return read_settings(find_scene(file), settings_in(given));
+  return made_settings("scene", {}, settings_in(given));
 }
 
 const Parameter& known_key(const Settings& settings, const std::string& name) {
@@ -496,6 +499,9 @@ PYBIND11_MODULE(_delf, m) {
     py::list all;
     for (const ShippedScene& s : shipped_scenes()) all.append(py::make_tuple(s.name, s.file.string(), s.title));
     return all;
+  });
+  m.def("keys_of_other_commands", [](const std::string& command, const Keys& given) {
+    return keys_of_other_commands(command, settings_in(given));
   });
   m.def("find_scene", [](const std::string& name) { return find_scene(name).string(); });
 

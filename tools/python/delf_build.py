@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Builds the wheel of delf by CMake (PEP 517): pip install . and pip wheel . in the root, without a network.
 
-The wheel runs on any processor of its kind, with the same bits: DELF_NATIVE is off. Settings (pip's -C NAME=VALUE):
-build-dir, an existing or new folder of CMake; native=on, for this machine alone; jobs. It links to
-the system's libraries of Boost.Program_options, fmt, HDF5 and zlib: its tag is that of this machine's Linux.
+The wheel runs on any processor of its kind, with the same bits: DELF_NATIVE is off. Of x86-64 it holds the module and the
+program twice, for any processor and for those with AVX2, and delf/_processor.py chooses; headers and libraries are those for
+any. Settings (pip's -C NAME=VALUE): build-dir, a folder for the builds, or an existing build tree, of which the wheel is
+made alone; native=on, one build for this machine alone; jobs. It links to the system's libraries of Boost.Program_options,
+fmt, HDF5 and zlib: its tag is that of this machine's Linux.
 """
 import base64
 import hashlib
 import os
 import pathlib
+import platform
 import re
 import shutil
 import subprocess
@@ -38,18 +41,56 @@ def _tag():
     return f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
 
 
-def _cmake(settings):
-    build = pathlib.Path(settings.get("build-dir") or ROOT / "build" / "wheel")
-    native = "ON" if settings.get("native", "off") == "on" else "OFF"
-    jobs = ["-j", settings["jobs"]] if "jobs" in settings else ["-j", str(os.cpu_count())]
-    if "build-dir" not in settings or not (build / "CMakeCache.txt").exists():
-        generator = ["-G", "Ninja"] if shutil.which("ninja") and not (build / "CMakeCache.txt").exists() else []
-        options = {"CMAKE_BUILD_TYPE": "Release", "DELF_NATIVE": native, "DELF_BUILD_TESTS": "OFF", "DELF_PYTHON": "ON",
-                   "Python_EXECUTABLE": sys.executable}
-        subprocess.run(["cmake", "-S", str(ROOT), "-B", str(build), *generator, *(f"-D{k}={v}" for k, v in options.items())],
-                       check=True)
-    subprocess.run(["cmake", "--build", str(build), *jobs, "--target", "python_package"], check=True)
+def _levels(settings):
+    """The builds of a wheel, the one whose headers and libraries it has first, with their flags of the compiler."""
+    if settings.get("native", "off") == "on":
+        return {"native": None}
+    if platform.machine() == "x86_64":
+        # gcc 12 fuses products of complex numbers, whatever -ffp-contract says
+        return {"x86-64": "", "x86-64-v3": "-march=x86-64-v3 -mno-fma"}
+    return {platform.machine(): ""}
+
+
+def _configured(build, flags):
+    generator = ["-G", "Ninja"] if shutil.which("ninja") and not (build / "CMakeCache.txt").exists() else []
+    options = {"CMAKE_BUILD_TYPE": "Release", "DELF_NATIVE": "ON" if flags is None else "OFF",
+               "CMAKE_CXX_FLAGS": flags or "", "DELF_BUILD_TESTS": "OFF", "DELF_PYTHON": "ON",
+               "DELF_UNITY": "ON", "Python_EXECUTABLE": sys.executable}
+    subprocess.run(["cmake", "-S", str(ROOT), "-B", str(build), *generator,
+                    *(f"-D{name}={value}" for name, value in options.items())], check=True)
     return build
+
+
+def _built(settings):
+    """The trees of the wheel's builds, by their levels."""
+    root = pathlib.Path(settings.get("build-dir") or ROOT / "build" / "wheel")
+    if "build-dir" in settings and (root / "CMakeCache.txt").exists():
+        trees = {"": root}
+    else:
+        trees = {level: _configured(root / level, flags) for level, flags in _levels(settings).items()}
+    for build in trees.values():
+        subprocess.run(["cmake", "--build", str(build), "-j", settings.get("jobs", str(os.cpu_count())),
+                        "--target", "python_package"], check=True)
+    return trees
+
+
+def _module(build):
+    """The name and the contents of the module of a build, without the names of what it does not export."""
+    (path,) = (build / "python" / "delf").glob("_delf*.so")
+    with tempfile.TemporaryDirectory() as folder:
+        copy = shutil.copy(path, folder)
+        if shutil.which("strip"):
+            subprocess.run(["strip", copy], check=True)
+        return path.name, pathlib.Path(copy).read_bytes()
+
+
+def _installed(build):
+    """What a build installs: paths below the prefix, with contents."""
+    with tempfile.TemporaryDirectory() as prefix:
+        subprocess.run(["cmake", "--install", str(build), "--prefix", prefix, "--strip"], check=True,
+                       stdout=subprocess.DEVNULL)
+        return {str(path.relative_to(prefix)): path.read_bytes() for path in sorted(pathlib.Path(prefix).rglob("*"))
+                if path.is_file()}
 
 
 def _about():
@@ -69,19 +110,19 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    build = _cmake(config_settings or {})
+    first, *others = _built(config_settings or {}).items()
     files = {}
     package = ROOT / "tools" / "python" / "delf"
     for path in sorted(package.iterdir()):
         if path.suffix in (".py", ".pyi", ".typed"):
             files[f"delf/{path.name}"] = path.read_bytes()
-    files.update({f"delf/{p.name}": p.read_bytes() for p in (build / "python" / "delf").glob("_delf*.so")})
-    with tempfile.TemporaryDirectory() as prefix:
-        subprocess.run(["cmake", "--install", str(build), "--prefix", prefix, "--strip"], check=True,
-                       stdout=subprocess.DEVNULL)
-        for path in sorted(pathlib.Path(prefix).rglob("*")):
-            if path.is_file():
-                files[f"delf/prefix/{path.relative_to(prefix)}"] = path.read_bytes()
+    files.update({f"delf/prefix/{name}": data for name, data in _installed(first[1]).items()})
+    for level, build in (("", first[1]), *others):
+        folder = f"delf/{level}/" if level else "delf/"
+        name, module = _module(build)
+        files[folder + name] = module
+        if level:
+            files[folder + "bin/delf"] = _installed(build)["bin/delf"]
     info = f"{NAME}-{_version()}.dist-info"
     files.update({f"{info}/{name}": data for name, data in _about().items()})
     hashed = lambda data: base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
@@ -92,7 +133,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         for name, data in files.items():
             entry = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))
             entry.compress_type = zipfile.ZIP_DEFLATED
-            executable = name.startswith("delf/prefix/bin/") or name.endswith(".so")
+            executable = "/bin/" in name or name.endswith(".so")
             entry.external_attr = (0o100755 if executable else 0o100644) << 16  # pip reads them of regular files alone
             archive.writestr(entry, data)
     return wheel

@@ -24,6 +24,8 @@ lattice.sites is given as lattice_sites=…, as **{"lattice.sites": …}, as sce
 of nearly every scene have short names too: density, constraint, symmetry, parameters, fields, theory, stencil, space, sites,
 length, h, courant, method, state, until, steps, every. Lengths and times are dimensionless, as in the scenes.
 
+A wheel has builds for several processors, of the same bits; DELF_CPU=x86-64 in the environment takes the one for any.
+
 Errors are delf.BadInput, NumericsFailed, CheckFailed and SystemFailed, with key, file and line.
 """
 import os as _os
@@ -32,6 +34,10 @@ _here = _os.path.dirname(_os.path.abspath(__file__))
 _scenes = _os.path.join(_here, "prefix", "share", "delf", "scenes")
 if _os.path.isdir(_scenes) and "DELF_SCENES" not in _os.environ:
     _os.environ["DELF_SCENES"] = _scenes
+
+from ._processor import CHOSEN as _level
+if _level:
+    __path__.insert(0, _os.path.join(_here, _level))  # its _delf comes first
 
 try:
     import numpy as _numpy

@@ -27,6 +27,9 @@ class Error(Exception):
         self.file: Optional[str] = place["file"] if place and place["file"] != "command line" else None
         self.line: Optional[int] = int(place["line"]) if place and place["line"] else None
         self.run: Any = None
+        self.text = ""  #: of the program: what it printed before
+        if self.key is None and (unknown := re.match(r"^(\w+): unknown key", here(message))):
+            self.key = unknown[1]
         if self.file is None and (plain := re.match(r"^([^\s:]+\.ini)(?::(\d+))?: ", message)):
             self.file, self.line = plain[1], int(plain[2]) if plain[2] else None
 

@@ -20,11 +20,11 @@ import numpy as np
 
 from . import _delf
 from ._errors import BadInput, CheckFailed, Error, NumericsFailed, SystemFailed, here
+from ._processor import CHOSEN, HERE
 from ._scene import Scene, scene_of, texts_of
 
 # Options beside **keys take Any: a dictionary of keys, **{"lattice.sites": 401}, might hold any of them to a type checker.
 SceneLike = Union[Scene, str, "os.PathLike[str]", None]
-HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 def prefix() -> str:
@@ -34,7 +34,8 @@ def prefix() -> str:
 
 def program() -> str:
     """The path of the program delf that belongs to this module."""
-    for path in (os.path.join(HERE, "prefix", "bin", "delf"), os.path.join(HERE, "bin", "delf")):
+    for folder in ([CHOSEN] if CHOSEN else []) + ["prefix", ""]:
+        path = os.path.join(HERE, folder, "bin", "delf")
         if os.path.exists(path):
             return path
     raise SystemFailed("the program delf is not in this package; install it again")
@@ -42,6 +43,12 @@ def program() -> str:
 
 def warn(line: str) -> None:
     warnings.warn(here(line), UserWarning, stacklevel=4)
+
+
+def warn_of_other_commands(command: str, keys: Mapping[str, Any]) -> None:
+    """Of keys that are given to a command which does not read them."""
+    for line in _delf.keys_of_other_commands(command, list(texts_of(keys).items())):
+        warnings.warn(line, UserWarning, stacklevel=3)
 
 
 _FAILURES = {1: CheckFailed, 2: BadInput, 3: NumericsFailed, 4: SystemFailed}
@@ -69,7 +76,9 @@ def call(words: Sequence[str], fails: Sequence[int] = (1,)) -> "subprocess.Compl
         raise KeyboardInterrupt
     message = next((line for line in reversed(lines) if not line.startswith(" ")), "the program ended without a word")
     message = message[6:] if message.startswith("delf: ") else message
-    raise _FAILURES.get(process.returncode, SystemFailed)(message)
+    failure = _FAILURES.get(process.returncode, SystemFailed)(message)
+    failure.text = out
+    raise failure
 
 
 @contextlib.contextmanager
@@ -171,7 +180,7 @@ class Table:
 
     def __repr__(self) -> str:
         names = ", ".join(self.table.dtype.names or ())
-        return f"{self.command}: {len(self.table)} rows{'' if self.passed else ', a check failed'}\n  {names}"
+        return f"{self.command}: {len(self.table)} rows{'' if self.passed else ', not passed'}\n  {names}"
 
     def _repr_html_(self) -> str:
         import html
@@ -189,7 +198,7 @@ def _command(name: str, scene: SceneLike, keys: Mapping[str, Any], out: Any, row
 
 
 def _without_folder(text: str, folder: str, out: Any) -> str:
-    return text if out is not None else "".join(l for l in text.splitlines(True) if not l.startswith(folder))
+    return text if out is not None else "".join(l for l in text.splitlines(True) if folder not in l)
 
 
 def convergence(scene: SceneLike = None, *, out: Any = None, **keys: Any) -> Table:
@@ -227,11 +236,20 @@ def sweep(scene: SceneLike = None, *, out: Any = None, jobs: Any = None, **keys:
     subject = scene_of(scene, once)
     with folder_for(out) as folder, words_of(subject) as named:
         table = [] if out is not None or "sweep_keep" in keys else ["--sweep.keep=table"]
-        done = call(["sweep", *named, *(f"--{k}={v}" for k, v in many.items()), *table, "--out", folder])
+        if "sweep.bisect" not in subject and all(name.startswith("sweep.") for name in many):
+            raise BadInput("sweep: give a key several values, as sites=[101, 201] or sites=\"101:401:100\"")
+        passed = True
+        try:
+            text = call(["sweep", *named, *(f"--{k}={v}" for k, v in many.items()), *table, "--out", folder]).stdout
+        except (BadInput, NumericsFailed, SystemFailed) as failure:
+            if not re.match(r"\d+ of \d+ runs did not end well", str(failure)):
+                raise
+            text, passed = failure.text, False
+            warn(str(failure).replace("the table above says", "the column status says"))
         with open(os.path.join(folder, "sweep.json"), encoding="utf-8") as file:
             data = json.load(file)
         rows = read_csv(os.path.join(folder, "sweep.csv"))
-        return Table("sweep", rows, data, _without_folder(done.stdout, folder, out), done.returncode == 0)
+        return Table("sweep", rows, data, _without_folder(text, folder, out), passed)
 
 
 class Plan:
@@ -308,6 +326,7 @@ def verify(scene: SceneLike = None, *, fields: Any = None, nearby: Any = (), out
     others = [os.fspath(file) for file in nearby]
     settings = subject.settings()
     if out is None and not settings.on_mesh:
+        warn_of_other_commands("verify", keys)
         result = _verified(settings, subject.name, rows, others)
     else:
         words = [] if rows is None else ["--fields", rows]

@@ -2,19 +2,23 @@
 """Runs: in memory, or in a folder of the program."""
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
+import shutil
 import sys
+import tempfile
 import threading
 import time
+import weakref
 from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _delf, _program
-from ._errors import BadInput, Error
-from ._scene import Scene, scene_of
+from ._errors import BadInput, Error, NumericsFailed
+from ._scene import Scene, scene_of, text_of
 
 SceneLike = Union[Scene, str, "os.PathLike[str]", None]
 Arrays = Dict[str, "np.ndarray[Any, Any]"]
@@ -120,14 +124,19 @@ class Run:
                  state: bytes = b"") -> None:
         self.scene, self.summary, self.series, self.fields = scene, Summary(summary), series, fields
         self._made_of, self._state = scene.copy(), state
+        self._scratch: Optional[_Scratch] = None  #: on a mesh: the folder of the program, without `folder`
         self.report, self.folder = report, folder
         self.text = text  #: scene.ini: the scene with all that was in force
         self.section = section  #: section.csv, if output.section asks for it
 
     def __getattr__(self, name: str) -> Any:
         if not name.startswith("_"):
-            where = (f'series["{name}"]' if name in (self.series.dtype.names or ()) else f"summary.{name}"
-                     if name in self.summary else f"fields.{name}" if name in self.fields else "")
+            import difflib
+            places = {**{one: f"summary.{one}" for one in self.summary},
+                      **{one: f'series["{one}"]' for one in self.series.dtype.names or ()},
+                      **{one: one for one in (*vars(self), *dir(Run)) if not one.startswith("_")}}
+            near = difflib.get_close_matches(name, list(places), 1)
+            where = places[near[0]] if near else f"fields.{name}" if name in self.fields else ""
             raise AttributeError(f"a run has no {name}" + (f"; did you mean {where}?" if where else ""))
         raise AttributeError(name)
 
@@ -172,20 +181,20 @@ class Run:
         """The run to a later time, from where it is, to the same bits as a run that goes there at once.
 
         A run in a folder goes on there, from its checkpoint; of a run in memory the result is a new one, with the records of
-        both. Runs on meshes in memory begin again.
+        both.
         """
         if (until is None) == (steps is None):
             raise BadInput("resume: give until or steps", "run.until")
         key, value = ("run.until", until) if until is not None else ("run.steps", steps)
         if self.folder is not None:
-            _program.call(["resume", self.folder, f"--{key}={value!r}"])
-            return load(self.folder)
+            return _by_program(self.folder, ["resume", self.folder, f"--{key}={text_of(value)}"])
         scene = self._made_of.copy()
         for other in ("run.until", "run.steps"):
             scene._given.pop(other, None)
         scene[key] = value
-        if scene.settings().on_mesh:
-            return run(scene)
+        if self._scratch:
+            return _in_scratch(scene, lambda folder, named: ["resume", folder, f"--{key}={text_of(value)}"],
+                               self._scratch)
         if every := re.search(r"^every = (\d+)$", self.text, re.M):
             scene["output.every"] = int(every[1])  # by default it follows from the end
         if not self._state:
@@ -217,7 +226,8 @@ class Run:
         return text + first.decode("utf-8", "replace")
 
 
-def _read_fields(path: str) -> "Tuple[Arrays, Components]":
+def _read_fields(path: str, only: str) -> "Tuple[Arrays, Components]":
+    """The datasets of a fields.h5, and the names of their components; a single field is named `only`."""
     try:
         import h5py
     except ImportError:
@@ -226,7 +236,10 @@ def _read_fields(path: str) -> "Tuple[Arrays, Components]":
         scales = {name for name in file if file[name].attrs.get("CLASS") == b"DIMENSION_SCALE"}
         arrays = {name: file[name][()] for name in ("time", "space", *sorted(set(file) - {"time", "space"} - scales))}
         names = {name: file[name].attrs.get("components", b"") for name in arrays}
-        return arrays, {name: text.decode().split(",") for name, text in names.items() if text}
+        components = {name: text.decode().split(",") for name, text in names.items() if text}
+        if arrays["field"].shape[-1] == 1:
+            components.setdefault("field", [only])
+        return arrays, components
 
 
 def load(folder: Union[str, "os.PathLike[str]"]) -> Run:
@@ -239,9 +252,10 @@ def load(folder: Union[str, "os.PathLike[str]"]) -> Run:
             text = file.read()
     except OSError as error:
         raise BadInput(f"{folder}: is no folder of a run: {error.strerror}; name one with summary.json") from None
-    return Run(Scene(os.path.join(folder, "scene.ini")), summary,
-               _program.read_csv(os.path.join(folder, "series.csv")),
-               Fields(lambda: _read_fields(os.path.join(folder, "fields.h5"))), text=text, folder=folder)
+    scene = Scene(os.path.join(folder, "scene.ini"))
+    return Run(scene, summary, _program.read_csv(os.path.join(folder, "series.csv")),
+               Fields(lambda: _read_fields(os.path.join(folder, "fields.h5"), str(scene["theory.fields"]))), text=text,
+               folder=folder)
 
 
 def _in_notebook() -> bool:
@@ -340,6 +354,50 @@ def _in_memory(scene: Scene, at_record: Optional[Callable[[Record], Any]], earli
     return result
 
 
+def _by_program(folder: str, words: List[str]) -> Run:
+    """A run of the program in a folder. What it recorded until it failed or was interrupted is `run` of the exception."""
+    try:
+        done = _program.call(words)
+    except (KeyboardInterrupt, NumericsFailed) as error:
+        with contextlib.suppress(Error):
+            error.run = load(folder)  # type: ignore[union-attr]
+        raise
+    result = load(folder)
+    result.report = done.stdout
+    return result
+
+
+class _Scratch:
+    """A folder that is removed with this object, or at the end of Python."""
+
+    def __init__(self) -> None:
+        self.path = tempfile.mkdtemp(prefix="delf-")
+        weakref.finalize(self, shutil.rmtree, self.path, True)
+
+
+def _in_scratch(scene: Scene, words: Callable[[str, List[str]], List[str]], earlier: Optional[_Scratch] = None) -> Run:
+    """The same in a folder that lives as long as the result; with `earlier`, the folder of another one, it goes on there."""
+    scratch = _Scratch()
+    folder = os.path.join(scratch.path, "run")
+    if earlier:
+        shutil.copytree(os.path.join(earlier.path, "run"), folder)
+
+    def held(loaded: Run) -> Run:
+        fields = Fields(lambda: (scratch, loaded.fields._both())[1])
+        result = Run(scene, dict(loaded.summary), loaded.series, fields,
+                     _program._without_folder(loaded.report, folder, None), loaded.text)
+        result._scratch = scratch
+        return result
+
+    with _program.words_of(scene) as named:
+        try:
+            return held(_by_program(folder, words(folder, named)))
+        except (KeyboardInterrupt, NumericsFailed) as error:
+            if getattr(error, "run", None):
+                error.run = held(error.run)  # type: ignore[union-attr]
+            raise
+
+
 def run(scene: SceneLike = None, *, out: Any = None, at_record: Any = None, **keys: Any) -> Run:
     """Steps a scene: a name, a file, a Scene, or keys alone; run("collision", **{"lattice.sites": 401}, until=20).
 
@@ -349,15 +407,12 @@ def run(scene: SceneLike = None, *, out: Any = None, at_record: Any = None, **ke
     """
     subject = scene_of(scene, keys)
     if out is None and not subject.settings().on_mesh:
+        _program.warn_of_other_commands("run", keys)
         return _in_memory(subject, at_record)
     if at_record is not None:
         raise BadInput("at_record: takes a run in memory, of a scene on a lattice; leave it or `out` away")
-    with _program.folder_for(out) as folder, _program.words_of(subject) as named:
-        figures = [] if out is not None or "output.figures" in subject else ["--output.figures=off"]
-        done = _program.call(["run", *named, *figures, "--out", folder])
-        result = load(folder)
-        result.report = done.stdout
-        if out is None:
-            result.fields._all()
-            result.scene, result.folder = subject, None
-    return result
+    if out is None:
+        return _in_scratch(subject, lambda folder, named: [
+            "run", *named, *([] if "output.figures" in subject else ["--output.figures=off"]), "--out", folder])
+    with _program.words_of(subject) as named:
+        return _by_program(os.fspath(out), ["run", *named, "--out", os.fspath(out)])

@@ -22,6 +22,8 @@ SECTIONS: List[str] = sorted({key["name"].split(".")[0] for key in _delf.keys()}
 
 def text_of(value: Any) -> str:
     """A value as a scene has it: True is on, a list is a,b,c, and a sympy expression its string with ^ for **."""
+    if hasattr(value, "tolist"):  # NumPy's numbers and arrays
+        value = value.tolist()
     if isinstance(value, bool):
         return "on" if value else "off"
     if isinstance(value, float):
@@ -163,8 +165,16 @@ class Scene:
         if name in SECTIONS:
             return Section(self, name)
         import difflib
-        near = difflib.get_close_matches(name, SECTIONS, 1)
-        raise AttributeError(f"a scene has no section {name}" + (f"; did you mean {near[0]}?" if near else ""))
+        near = difflib.get_close_matches(name, [*SECTIONS, *(n for n in dir(Scene) if not n.startswith("_"))], 1)
+        meant = f'scene["{SHORT[name]}"]' if name in SHORT else near[0] if near else ""
+        raise AttributeError(f"a scene has no section {name}" + (f"; did you mean {meant}?" if meant else ""))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_"):  # scene.sites = 5 would be no key of the scene
+            meant = key_of(name)
+            raise AttributeError(f"a scene has no attribute {name}" + (f'; did you mean scene["{meant}"]?' if "." in meant
+                                 else f'; give its keys, as scene["{name}.KEY"]' if name in SECTIONS else ""))
+        object.__setattr__(self, name, value)
 
     def __dir__(self) -> List[str]:
         return list(super().__dir__()) + SECTIONS

@@ -123,6 +123,8 @@ def an_unknown_attribute_suggests() -> None:
     run = delf.run("kink", until=1)
     assert "energy_final" in str(raises(AttributeError, lambda: run.summary.energy_finl))
     assert 'series["energy"]' in str(raises(AttributeError, lambda: run.energy))
+    assert "did you mean summary?" in str(raises(AttributeError, lambda: run.summry))
+    assert 'scene["lattice.sites"]' in str(raises(AttributeError, lambda: setattr(delf.Scene("kink"), "sites", 5)))
     assert "phi" in str(raises(AttributeError, lambda: run.fields.ph))
 
 

@@ -20,14 +20,18 @@ class Lattice:
         self.space, self.sites, self.length, self.walls = space, sites, length, walls
 
     @property
+    def cells(self) -> int:
+        return self.sites - 1 if self.space == "interval" else self.sites
+
+    @property
     def space_step(self) -> float:
         """k."""
-        return self.length / (self.sites - 1 if self.space == "interval" else self.sites)
+        return self.length / self.cells
 
     @property
     def x(self) -> "np.ndarray[Any, Any]":
-        """The positions of the sites."""
-        return self.space_step * np.arange(self.sites)
+        """The positions of the sites, to the bit those of an evolution."""
+        return np.arange(self.sites) * self.length / self.cells
 
     def keys(self) -> Dict[str, Any]:
         if self.space == "point":
