@@ -330,9 +330,11 @@ std::vector<std::string> keys_of_other_commands(const std::string& command, cons
   for (const Setting& s : keys) {
     const std::string_view section = section_of(s.key);
     if (section == find_command(command).section) continue;
+    std::vector<std::string> readers;
     for (const Command& other : commands())
-      if (section == other.section)
-        warnings.push_back(fmt::format("{} = {}: warning: only `delf {}` reads it", s.key, s.value, other.name));
+      if (section == other.section) readers.push_back(fmt::format("`delf {}`", other.name));
+    if (!readers.empty())
+      warnings.push_back(fmt::format("{} = {}: warning: only {} reads it", s.key, s.value, fmt::join(readers, " or ")));
   }
   return warnings;
 }

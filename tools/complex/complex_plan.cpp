@@ -52,14 +52,15 @@ void plan_sites(const ComplexScene& c) {
 
 void plan_mesh(const ComplexScene& c) {
   const CellSpace& space = *c.space;
-  const auto walls = boundary_points(space.mesh).size();
+  const std::size_t walls = boundary_points(space.mesh).size(), held = std::ranges::count(space.fixed, 1);
   fmt::print("{}: {}, {} points, {}\n", c.scene.name, c.scene.problem.theory, space.sites(), c.mesh_in_words());
   fmt::print("  state      {}\n", c.state_in_words());
   fmt::print("  mesh       {} {:.6g}, shortest edge {:.6g}, {} boundary points{}\n",
              space.mesh.dimension == 1 ? "length" : "area", area_of(space), shortest_edge(space.mesh), walls,
-             walls == 0                               ? ""
-             : std::ranges::count(space.fixed, 1) > 0 ? ", fixed"
-                                                      : ", natural");
+             walls == 0     ? ""
+             : held == 0    ? ", natural"
+             : held < walls ? fmt::format(", {} fixed, {} natural", held, walls - held)
+                            : ", fixed");
   fmt::print("             {}\n", c.topology_in_words());
   const std::size_t values = 8 * space.fields_of_row();
   if (c.time == MeshTime::none) {

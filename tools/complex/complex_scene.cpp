@@ -194,6 +194,28 @@ void require_solution(const ComplexScene& c) {
   require_solved(points, names);
 }
 
+/// boundary.NAME for parts of the mesh.
+std::vector<PartCondition> read_parts(const Settings& settings, const Mesh& mesh) {
+  std::vector<PartCondition> conditions;
+  for (const Setting& s : settings.all()) {
+    constexpr std::string_view of_boundary = "boundary.";
+    if (!s.key.starts_with(of_boundary) || s.key == "boundary.mesh") continue;
+    const std::string part = s.key.substr(of_boundary.size());
+    if (std::ranges::find(mesh.parts, part, &Mesh::Part::name) == mesh.parts.end()) {
+      std::vector<std::string> names;
+      for (const Mesh::Part& named : mesh.parts) names.push_back(named.name);
+      throw settings.error(
+          s.key, mesh.parts.empty()
+                     ? "the boundary of this mesh has no named parts; use boundary.mesh"
+                     : fmt::format("the mesh has no part of this name; its parts are {}", fmt::join(names, ", ")));
+    }
+    if (s.value != "fixed" && s.value != "natural")
+      throw settings.error(s.key, "a part of a mesh is fixed or natural; use one of them");
+    conditions.push_back({part, s.value == "fixed"});
+  }
+  return conditions;
+}
+
 /// The mesh, or the complex, its method and its time. Returns the shortest edge of the mesh as it is given.
 double read_space(ComplexScene& c, const Values& values, int halvings) {
   const Settings& settings = c.scene.settings;
@@ -217,9 +239,11 @@ double read_space(ComplexScene& c, const Values& values, int halvings) {
                          "needs a regular lattice; leave it out on a mesh, or use " + names_of_methods_on_meshes());
   if (c.stencils) return 1;
   const double edge = shortest_edge(std::get<Mesh>(mesh));
-  c.space = std::make_shared<const CellSpace>(finer_mesh(name, std::get<Mesh>(std::move(mesh)), halvings),
-                                              c.theory->shared_density(), values.choice("boundary.mesh") == "fixed",
-                                              c.theory->constraint());
+  const bool fixed = values.choice("boundary.mesh") == "fixed";
+  const auto space = std::make_shared<CellSpace>(finer_mesh(name, std::get<Mesh>(std::move(mesh)), halvings),
+                                                 c.theory->shared_density(), fixed, c.theory->constraint());
+  space->fixed = held_points(space->mesh, fixed, read_parts(settings, space->mesh));
+  c.space = space;
   p.lattice = Lattice::on(c.space);
   return edge;
 }

@@ -100,10 +100,29 @@ void declare_measures(Settings& settings) {
                       {}});
 }
 
+constexpr std::string_view of_boundary = "boundary.";
+
+/// boundary.NAME on a mesh; which parts there are is known once the mesh is read.
+void declare_parts(Settings& settings) {
+  const Setting* const space = settings.find("lattice.space");
+  if (!space || space->value != "complex") return;
+  const std::vector<Setting> all(settings.all().begin(), settings.all().end());
+  for (const Setting& s : all)
+    if (s.key.starts_with(of_boundary) && !settings.key(s.key))
+      settings.declare({{.key = s.key,
+                         .fallback = "",
+                         .help = "the part of this name of a mesh's boundary",
+                         .choices = {"fixed", "natural"},
+                         .otherwise = "as boundary.mesh"},
+                        DeclaredBy::scene,
+                        {}});
+}
+
 }  // namespace
 
 void declare_keys(Settings& settings) {
   declare_measures(settings);
+  declare_parts(settings);
   try {
     if (settings.find("stencil.sites")) settings.imply("lattice.stencil", stencil_as_text, "stencil.sites");
     if (const TheoryEntry* entry = chosen_theory(settings)) declare_states(settings, declare_theory(settings, *entry));
@@ -115,7 +134,7 @@ void declare_keys(Settings& settings) {
 bool may_be_declared(std::string_view key) {
   return std::ranges::any_of(theory_entries(),
                              [key](const TheoryEntry* e) { return e->further && key.starts_with("theory."); }) ||
-         is_measure(key) || key.starts_with("initial.") || key.starts_with("exact.");
+         is_measure(key) || key.starts_with(of_boundary) || key.starts_with("initial.") || key.starts_with("exact.");
 }
 
 }  // namespace delf

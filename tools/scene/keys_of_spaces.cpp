@@ -66,6 +66,8 @@ std::string why_without_time(SpaceKind kind) {
 }
 
 std::string why_unread(SpaceKind kind, std::string_view key) {
+  // a part of the mesh, which is asked for it
+  if ((kind == SpaceKind::mesh || kind == SpaceKind::still) && section_of(key) == "boundary") return {};
   const auto known = std::ranges::find_if(keys_of_spaces(), [&](const KeysOfSpaces& group) {
     return std::ranges::find(group.keys, key) != group.keys.end();
   });

@@ -174,7 +174,7 @@ std::vector<Parameter> scene_keys() {
        .fallback = "fixed",
        .help = "the right wall of an interval, likewise",
        .choices = {"fixed", "clamped", "natural"}},
-      {.key = "boundary.mesh", .fallback = "fixed", .help = "the boundary of a mesh", .choices = {"fixed", "natural"}},
+      {.key = "boundary.mesh", .fallback = "fixed", .help = "the boundary of a mesh; boundary.NAME is the same for a part that its file names, or a side", .choices = {"fixed", "natural"}},
       {.key = "boundary.winding",
        .fallback = 0,
        .help = "what the field gains around a circle, in units of 2 pi",

@@ -6,6 +6,7 @@
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/complex/mesh_text.hpp"
+#include "tools/files/fields_reader.hpp"
 
 using namespace delf;
 using namespace delf::testing;
@@ -96,6 +97,38 @@ TEST_CASE("groups of Gmsh's two formats and sides of a text are the parts of a b
   CHECK(fault_of(square + "cell 0 1 2 3\nside left 0 4\n") ==
         "6: a side has the number of a point that is not there; correct it");
   CHECK(fault_of(square + "cell 0 1 2 3\nside left 0\n") == "6: a side has two points; give their numbers");
+}
+
+TEST_CASE("parts of a mesh's boundary are fixed or natural by name, with the energy kept, and others are refused") {
+  const Folder folder;
+  write(
+      folder / "wave.ini",
+      "[theory]\nname = wave\n[lattice]\nspace = complex\nmesh = quadrilaterals:2,1,16,8\ncourant = 0.3\n"
+      "[boundary]\nmesh = natural\nleft = fixed\n[initial]\nphi = x\nphi_t = 0\n[run]\nuntil = 1\n[output]\nfigures = off\n");
+  const Ran plan = delf_program(folder, "plan wave.ini");
+  CHECK(contains(plan.out, "48 boundary points, 9 fixed, 39 natural"));
+  REQUIRE(delf_program(folder, "run wave.ini --out out").code == 0);
+  // φ = x is held at x = 0 and free at x = 2, where a wave of slope −1 begins: at t = 1 it has come to x = 1
+  const FieldsReader fields(folder / "out/fields.h5");
+  const std::vector<double> last = fields.row(fields.frames() - 1);
+  const Mesh mesh = rectangle_mesh(2, 1, 16, 8, true);
+  for (std::size_t p = 0; p < last.size(); ++p) {
+    const double x = mesh.points[p][0];
+    if (x < 0.6) CHECK(last[p] == Approx(x).margin(1e-3));
+    if (x == 2) CHECK(last[p] == Approx(1).margin(0.05));
+  }
+  const Ran other = delf_program(folder, "run wave.ini --boundary.inflow=fixed --out none");
+  CHECK(other.code == 2);
+  CHECK(
+      contains(other.err,
+               "--boundary.inflow = fixed: the mesh has no part of this name; its parts are left, right, bottom, top"));
+  CHECK(delf_program(folder, "run wave.ini --boundary.left=held --out none").code == 2);
+  CHECK(contains(delf_program(folder, "run sphere --boundary.left=fixed --out none").err,
+                 "has no named parts; use boundary.mesh"));
+  CHECK(delf_program(folder, "run kink --boundary.inflow=fixed --out none").code == 2);
+  // the part stays one where the mesh is refined, and in the scene that is written
+  CHECK(delf_program(folder, "run out/scene.ini --out again").code == 0);
+  CHECK(read(folder / "out/series.csv") == read(folder / "again/series.csv"));
 }
 
 TEST_CASE("a mesh that cannot be read says on which line") {
