@@ -2,12 +2,12 @@
 #include "lattice/complex/complex_plan.hpp"
 
 #include <algorithm>
-#include <boost/graph/compressed_sparse_row_graph.hpp>
-#include <boost/graph/strong_components.hpp>
 #include <numeric>
+#include <utility>
 
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
+#include "lattice/plan/block_order.hpp"
 
 namespace delf {
 namespace {
@@ -35,20 +35,18 @@ std::string some_names(const Complex& complex, const std::vector<Index>& sites, 
   throw BadInput("lattice.mesh", text);
 }
 
-/// Of each unknown, the number of its strongly connected component; a component is numbered after all that it needs.
-std::vector<Index> components(const Incidence& contains, const Matching& matching, Index& count) {
-  using Graph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property, boost::no_property,
-                                                   boost::no_property, Index, Index>;
-  std::vector<Index> from, to;
-  from.reserve(contains.entries.size());
-  to.reserve(contains.entries.size());
+/// Of each unknown, the number of its block; a block is numbered after all that it needs.
+std::vector<Index> blocks_of(const Incidence& contains, const Matching& matching, Index& count) {
+  std::vector<std::pair<int, int>> edges;
+  edges.reserve(contains.entries.size());
   for (Index u = 0; u < contains.columns; ++u)
     for (const Index v : contains.row(matching.row_of[u]))
-      if (v != u) from.push_back(u), to.push_back(v);
-  const Graph graph(boost::construct_inplace_from_sources_and_targets, from, to, contains.columns);
+      if (v != u) edges.emplace_back(u, v);
+  const auto blocks = blocks_in_order(contains.columns, edges);
+  count = static_cast<Index>(blocks.size());
   std::vector<Index> block(contains.columns);
-  count = boost::strong_components(
-      graph, boost::make_iterator_property_map(block.begin(), boost::get(boost::vertex_index, graph)));
+  for (Index b = 0; b < count; ++b)
+    for (const int u : blocks[b]) block[u] = b;
   return block;
 }
 
@@ -85,7 +83,7 @@ ComplexPlan make_plan(const Complex& complex, const Touching& touching) {
   const Matching matching = largest_matching(all.contains);
   if (!matching.is_perfect()) refuse(complex, all, matching);
   Index count = 0;
-  const std::vector<Index> block = components(all.contains, matching, count);
+  const std::vector<Index> block = blocks_of(all.contains, matching, count);
 
   // A block's level is one more than those of all blocks that it contains unknowns of.
   std::vector<Index> by_block(block.size());

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
 #include "schemes/complex/complex_noether.hpp"
@@ -16,8 +16,6 @@
 
 namespace delf {
 namespace {
-
-constexpr std::size_t most = ComplexSystem::most;
 
 /// V_K of cells as stencils of a complex, a family for each number of corners.
 class CellFamilies {
@@ -95,16 +93,30 @@ void AsynchronousEvolution::visit(SavedState& state) {
   if (state.restores()) fill_queue();
 }
 
+template <class Use>
+void AsynchronousEvolution::at_cell(int cell, double t, std::span<const double> y, const Use& use) const {
+  const auto [number, site] = potentials_.anchor(cell);
+  const StencilFamily& family = *potentials_.row().families()[number];
+  const auto corners = space_.mesh.cell(cell);
+  const int values = family.size();
+  // One cell in all lanes.
+  const ScratchRows x(1, lanes), local(values, lanes), out(values, lanes);
+  std::array<int, lanes> numbers;
+  numbers.fill(site.space);
+  Pack(0.0).store(x[0]);
+  for (int i = 0; i < values; ++i) Pack(y[at(corners[i / d_] * d_ + i % d_)]).store(local[i]);
+  use(family, StencilBatch{{1, 1, t, 0}, lanes, x[0], local[0], nullptr, numbers.data()}, out);
+}
+
 void AsynchronousEvolution::kick(int cell, double t, std::span<const double> y, double factor,
                                  std::vector<double>& momenta) const {
   const auto corners = space_.mesh.cell(cell);
-  potentials_.each_residual({&cell, 1}, y,
-                            [&](ComplexSystem::Stencils, const double* r) {
-                              for (std::size_t n = 0; n < corners.size() * at(d_); ++n)
-                                if (const std::size_t site = corners[n / at(d_)]; !space_.fixed[site])
-                                  momenta[site * at(d_) + n % at(d_)] += factor * steps_[cell] * r[n * most];
-                            },
-                            {.places = {}, .time = t});
+  at_cell(cell, t, y, [&](const StencilFamily& family, const StencilBatch& batch, const ScratchRows& r) {
+    family.residual(batch, r[0]);
+    for (int i = 0; i < family.size(); ++i)
+      if (const int site = corners[i / d_]; !space_.fixed[site])
+        momenta[site * d_ + i % d_] += factor * steps_[cell] * r[i][0];
+  });
 }
 
 void AsynchronousEvolution::drift(int site, double t) {
@@ -155,11 +167,11 @@ double AsynchronousEvolution::energy(double t) const {
   for (int c = 0; c < space_.mesh.cells(); ++c) {
     const double last = static_cast<double>(done_[c]) * steps_[c];
     kick(c, t, now, (t - last) / steps_[c] - 0.5, momenta);
+    at_cell(c, t, now, [&](const StencilFamily& family, const StencilBatch& batch, const ScratchRows& L) {
+      family.lagrangian(batch, L[0]);
+      potential -= L[0][0];
+    });
   }
-  potentials_.each_lagrangian(
-      potentials_.all_stencils(), now,
-      [&](ComplexSystem::Stencils batch, const double* L) { potential -= std::accumulate(L, L + batch.size(), 0.0); },
-      {.places = {}, .time = t});
   double kinetic = 0;  // ½ p M⁻¹ p/A
   for (int i = 0; i < space_.sites(); ++i)
     for (int a = 0; a < d_; ++a)

@@ -71,14 +71,17 @@ class AsynchronousEvolution {
   void fill_queue();
   void update_next();
   void drift(int site, double t);
+  /// use(family, the cell as a batch, room for a number of each value)
+  template <class Use>
+  void at_cell(int cell, double t, std::span<const double> y, const Use& use) const;
   /// h_K ∂L/∂y at the corners of a cell at time t, added to the momenta, times a factor.
   void kick(int cell, double t, std::span<const double> y, double factor, std::vector<double>& momenta) const;
 
   const CellSpace& space_;
   int d_;
   std::vector<double> steps_;
-  std::vector<std::int64_t> done_;  ///< of each cell: updates after t = 0
-  ComplexSystem potentials_;  ///< V_K: stencil K is cell K, whose sites are the points of the mesh
+  std::vector<std::int64_t> done_;    ///< of each cell: updates after t = 0
+  ComplexSystem potentials_;          ///< V_K: stencil K is cell K, whose sites are the points of the mesh
   std::vector<double> inverse_mass_;  ///< of T, d × d
   using Next = std::pair<double, int>;
   std::priority_queue<Next, std::vector<Next>, std::greater<>> queue_;

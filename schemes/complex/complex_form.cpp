@@ -88,17 +88,13 @@ ComplexForm::ComplexForm(const ComplexSystem& system, ComplexRegion region, std:
     for (int a = 0; a < d; ++a) equation_[place(site) * at(d) + at(a)] = equations_++;
   for (const int site : region_.boundary())
     for (int a = 0; a < d; ++a) at_boundary_[place(site) * at(d) + at(a)] = 1;
-  system.each_jacobian(region_.stencils(), y, [&](ComplexSystem::Stencils batch, const double* J) {
-    const std::size_t size = system.family_of(batch[0]).size();
-    constexpr std::size_t most = ComplexSystem::most;
-    for (std::size_t s = 0; s < batch.size(); ++s) {
-      Local local{{}, std::vector<double>(size * size)};
-      for (const int site : complex.vertices(batch[s]))
-        for (int a = 0; a < d; ++a) local.nodes.push_back(place(site) * at(d) + at(a));
-      for (std::size_t k = 0; k < size * size; ++k)
-        local.J[k] = wrong_sign && size > 1 && k < size ? -J[k * most + s] : J[k * most + s];
-      locals_.push_back(std::move(local));
-    }
+  system.each_jacobian(region_.stencils(), y, [&](int stencil, const Assembly::Local& here) {
+    Local local{{}, {here.derivatives.begin(), here.derivatives.end()}};
+    for (const int site : complex.vertices(stencil))
+      for (int a = 0; a < d; ++a) local.nodes.push_back(place(site) * at(d) + at(a));
+    const std::size_t size = local.nodes.size();
+    for (std::size_t m = 0; wrong_sign && size > 1 && m < size; ++m) local.J[m] = -local.J[m];
+    locals_.push_back(std::move(local));
   });
 }
 

@@ -12,20 +12,12 @@
 namespace delf {
 namespace {
 
-constexpr std::size_t most = ComplexSystem::most;
-
-/// use(stencil, its r or its J, ξ) for some stencils.
+/// use(its values and its r or its J, ξ) for some stencils.
 template <class Use>
-auto with_generator(const ComplexSystem& system, std::span<const double> y, const LinearSymmetry& symmetry,
-                    const Use& use) {
-  return [&system, &symmetry, y, use](ComplexSystem::Stencils batch, const double* out) {
-    const ComplexSystem::Family& family = system.family_of(batch[0]);
-    std::vector<double> local(family.size()), xi;
-    for (std::size_t s = 0; s < batch.size(); ++s) {
-      for (int i = 0; i < family.size(); ++i) local[i] = y[system.node(batch[s], i)];
-      generator(family, symmetry, local, xi);
-      use(batch[s], family, out + s, xi);
-    }
+ComplexSystem::Visit with_generator(const ComplexSystem& system, const LinearSymmetry& symmetry, const Use& use) {
+  return [&system, &symmetry, use, xi = std::vector<double>()](int stencil, const Assembly::Local& here) mutable {
+    generator(system.family_of(stencil), symmetry, here.y, xi);
+    use(here, xi);
   };
 }
 
@@ -49,6 +41,11 @@ ComplexNoether::ComplexNoether(std::vector<LinearSymmetry> symmetries, double to
   }
 }
 
+/// ∂L/∂yⁱ, or with the planted fault.
+double ComplexNoether::r_of(const Assembly::Local& here, std::size_t i) const {
+  return wrong_sign_ && here.derivatives.size() > 1 && i == 0 ? -here.derivatives[0] : here.derivatives[i];
+}
+
 /// Σ_l ∂L/∂yˡ · ξ(yˡ) of a stencil at random values, the worst of some. Where a density is not defined around 0 (a
 /// logarithm of φ), it may be around 1.
 Balance ComplexNoether::invariance(const ComplexSystem& system, const LinearSymmetry& symmetry, int family,
@@ -67,15 +64,12 @@ Balance ComplexNoether::invariance(const ComplexSystem& system, const LinearSymm
     worst = {};
     bool finite = true;
     system.each_residual(
-        stencils, y,
-        with_generator(system, y, symmetry,
-                       [&](int, const ComplexSystem::Family& of, const double* r, const std::vector<double>& xi) {
-                         Balance balance;
-                         for (std::size_t i = 0; i < xi.size(); ++i)
-                           balance.add((wrong_sign_ && of.size() > 1 && i == 0 ? -r[0] : r[i * most]) * xi[i]);
-                         finite = finite && std::isfinite(balance.absolute);
-                         if (worst.count == 0 || worse(balance.relative(), worst.relative())) worst = balance;
-                       }));
+        stencils, y, with_generator(system, symmetry, [&](const Assembly::Local& here, const std::vector<double>& xi) {
+          Balance balance;
+          for (std::size_t i = 0; i < xi.size(); ++i) balance.add(r_of(here, i) * xi[i]);
+          finite = finite && std::isfinite(balance.absolute);
+          if (worst.count == 0 || worse(balance.relative(), worst.relative())) worst = balance;
+        }));
     if (finite) break;
   }
   return worst;
@@ -84,16 +78,13 @@ Balance ComplexNoether::invariance(const ComplexSystem& system, const LinearSymm
 Balance ComplexNoether::sum(const ComplexSystem& system, const ComplexRegion& region, std::span<const double> y,
                             const LinearSymmetry& symmetry) const {
   Balance balance;
-  const std::size_t d = system.components();
+  const int d = system.components();
   system.each_residual(
       region.stencils(), y,
-      with_generator(system, y, symmetry,
-                     [&](int stencil, const ComplexSystem::Family& of, const double* r, const std::vector<double>& xi) {
-                       for (std::size_t i = 0; i < xi.size(); ++i)
-                         if (std::ranges::binary_search(
-                                 region.boundary(), static_cast<int>(system.node(stencil, static_cast<int>(i)) / d)))
-                           balance.add((wrong_sign_ && of.size() > 1 && i == 0 ? -r[0] : r[i * most]) * xi[i]);
-                     }));
+      with_generator(system, symmetry, [&](const Assembly::Local& here, const std::vector<double>& xi) {
+        for (std::size_t i = 0; i < xi.size(); ++i)
+          if (std::ranges::binary_search(region.boundary(), here.places[i] / d)) balance.add(r_of(here, i) * xi[i]);
+      }));
   return balance;
 }
 
@@ -101,20 +92,15 @@ Balance ComplexNoether::sum(const ComplexSystem& system, const ComplexRegion& re
 double ComplexNoether::rounding(const ComplexSystem& system, const ComplexRegion& region, std::span<const double> y,
                                 const LinearSymmetry& symmetry) const {
   double products = 0;
-  const std::size_t d = system.components();
+  const int d = system.components();
   system.each_jacobian(
       region.stencils(), y,
-      with_generator(system, y, symmetry,
-                     [&](int stencil, const ComplexSystem::Family&, const double* J, const std::vector<double>& xi) {
-                       const std::size_t n = xi.size();
-                       for (std::size_t i = 0; i < n; ++i) {
-                         const std::size_t node = system.node(stencil, static_cast<int>(i));
-                         if (!std::ranges::binary_search(region.boundary(), static_cast<int>(node / d))) continue;
-                         for (std::size_t m = 0; m < n; ++m)
-                           products +=
-                               std::abs(J[(i * n + m) * most] * y[system.node(stencil, static_cast<int>(m))] * xi[i]);
-                       }
-                     }));
+      with_generator(system, symmetry, [&](const Assembly::Local& here, const std::vector<double>& xi) {
+        for (std::size_t i = 0; i < xi.size(); ++i)
+          for (std::size_t m = 0; m < xi.size(); ++m)
+            if (std::ranges::binary_search(region.boundary(), here.places[i] / d))
+              products += std::abs(here.derivatives[i * xi.size() + m] * here.y[m] * xi[i]);
+      }));
   return std::numeric_limits<double>::epsilon() * products;
 }
 

@@ -27,6 +27,7 @@ class ComplexNoether {
   std::vector<Check> checks() const;
 
  private:
+  double r_of(const Assembly::Local&, std::size_t i) const;
   Balance invariance(const ComplexSystem&, const LinearSymmetry&, int family, std::mt19937_64&) const;
   Balance sum(const ComplexSystem&, const ComplexRegion&, std::span<const double> y, const LinearSymmetry&) const;
   double rounding(const ComplexSystem&, const ComplexRegion&, std::span<const double> y, const LinearSymmetry&) const;

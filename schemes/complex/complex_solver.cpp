@@ -27,12 +27,7 @@ std::vector<int> cuts_of(const ComplexPlan& plan, int begin, int end, int count)
 ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options) : system_(system), options_(options) {
   const Touching touching(system.complex());  // of no use behind the plan
   plan_ = make_plan(system.complex(), touching);
-  const std::size_t sites = system.complex().sites();
-  Places places{std::vector<std::int32_t>(sites, -1), std::vector<std::int32_t>(sites, -1)};
-  for (std::size_t n = 0; n < plan_.unknowns.size(); ++n) {
-    places.equation[plan_.equations[n]] = static_cast<std::int32_t>(n);
-    places.unknown[plan_.unknowns[n]] = static_cast<std::int32_t>(n);
-  }
+  system.row();  // made before threads ask for it
   struct Range {
     int first, last;
   };
@@ -61,7 +56,7 @@ ComplexSolver::ComplexSolver(const ComplexSystem& system, Options options) : sys
   parts_.resize(ranges.size());
   if (options.threads > 1 && shared_levels() > 0) team_ = std::make_unique<ThreadTeam>(options.threads);
   for_each(0, ranges.size(), [&](std::size_t p, std::size_t) {
-    parts_[p] = std::make_unique<LevelPart>(system_, touching, plan_, places, ranges[p].first, ranges[p].last);
+    parts_[p] = std::make_unique<LevelPart>(system_, touching, plan_, ranges[p].first, ranges[p].last);
   });
 }
 

@@ -13,10 +13,10 @@ namespace delf {
 
 class ThreadTeam;
 
-/// Solves a complex level by level, and a wide level in parts: some blocks each, which threads share. What is proved linear
-/// is assembled once, as a sparse matrix of the part's equations. If all other terms are linear in the unknowns of the part,
-/// it is one solve: divisions where every unknown is a block of its own, dense matrices of small blocks, a sparse
-/// factorisation otherwise. Else Newton's method with such a matrix and a line search, from the values that stand there.
+/// Solves a complex level by level, and a wide level in parts: some blocks each, which threads share. Where the equations of
+/// a part are proved linear in its unknowns it is one solve, by a BlockSolver: divisions where every unknown is a block of its
+/// own, dense matrices of small blocks, a sparse factorisation of each larger one. Else Newton's method with such a solver and
+/// a line search, from the values that stand there.
 /// Parts are the same for any number of threads, and so is every bit.
 class ComplexSolver {
  public:
@@ -59,7 +59,6 @@ class ComplexSolver {
 
  private:
   class LevelPart;
-  struct Places;
   /// Calls one(part, share) for each of these parts, where shares go on side by side. Throws what the first part threw, when all
   /// are done.
   template <class Do>

@@ -2,15 +2,18 @@
 #include "schemes/complex/complex_system.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
+#include "lattice/space/mesh_space.hpp"
+#include "schemes/complex/family_on_sites.hpp"
+#include "schemes/system/listed_strips.hpp"
 
 namespace delf {
 namespace {
@@ -30,54 +33,47 @@ std::vector<TablePoint::Entry> place_of(const TablePoint& point) {
 
 ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int vertices,
                               const std::vector<TablePoint>& form)
-    : density_(std::move(density)), vertices_(vertices), form_(form) {
+    : density_(std::move(density)), vertices_(vertices), size_(vertices * density_->components()), form_(form) {
   const int d = density_->components();
-  StencilTable table{.pattern = {}, .points = {}};
-  for (int l = 0; l < vertices; ++l) table.pattern.vertices.push_back({.time = 0, .space = l});
-  coupled_.assign(at(vertices * d) * at(vertices * d), 0), varying_ = coupled_;
+  for (int l = 0; l < vertices; ++l) table_.pattern.vertices.push_back({.time = 0, .space = l});
+  coupled_.assign(at(size_) * at(size_), 0);
   // The numbers of a stencil are those of its table, point after point, and the place and the time of each point.
-  int numbers = 0;
   for (const TablePoint& given : form) {
     TablePoint point{.slots = {}};
-    point.own = {.weight = numbers++, .slots = {}};
+    const auto number = [&](SlotPowers powers) {
+      powers_.push_back(powers);
+      return static_cast<int>(powers_.size()) - 1;
+    };
+    point.own = {.weight = number({0, 0}), .slots = {}};
     for (std::size_t slot = 0; slot < at(density_->slots()); ++slot)
       for (const TablePoint::Entry& e : given.slots[slot]) {
-        point.slots[slot].push_back({e.vertex, 1.0}), point.own.slots[slot].push_back(numbers++);
+        point.slots[slot].push_back({e.vertex, 1.0}), point.own.slots[slot].push_back(number(slot_powers[slot]));
         for (int a = 0; a < d && is_placed(); ++a)
           reads_time_ = reads_time_ || !density_->is_zero(static_cast<int>(slot) * d + a, density_->variables());
       }
-    table.points.push_back(std::move(point));
+    table_.points.push_back(std::move(point));
     places_.push_back(place_of(given));
   }
-  for (TablePoint& point : table.points)
+  auto numbers = static_cast<int>(powers_.size());
+  for (TablePoint& point : table_.points)
     if (is_placed()) point.own.place = numbers++, point.own.time = numbers++;
-  for (const TablePoint& point : table.points)
+  for (const TablePoint& point : table_.points)
     for (std::size_t s = 0; s < point.slots.size(); ++s)
       for (std::size_t r = 0; r < point.slots.size(); ++r)
         for (const auto& [l, left] : point.slots[s])
           for (const auto& [m, right] : point.slots[r])
             for (int a = 0; a < d; ++a)
-              for (int b = 0; b < d; ++b) {
-                const int i = static_cast<int>(s) * d + a, j = static_cast<int>(r) * d + b;
-                if (density_->is_zero(i, j)) continue;
-                const std::size_t entry = at((l * d + a) * vertices * d + m * d + b);
-                coupled_[entry] = 1;
-                if (density_->is_constant(i, j)) continue;
-                varying_[entry] = 1;
-                linear_ = false;
-              }
-  linear_ = linear_ && !reads_time_;
-  OwnWeights own{std::make_shared<ListedStencils>(vertices, std::vector<std::int32_t>(), 0), {}};
-  own.numbers.resize(numbers);
-  family_ = jets_ = std::make_shared<JetFamily>(std::move(table), density_, false, std::move(own));
+              for (int b = 0; b < d; ++b)
+                if (!density_->is_zero(static_cast<int>(s) * d + a, static_cast<int>(r) * d + b))
+                  coupled_[at((l * d + a) * size_ + m * d + b)] = 1;
 }
 
 ComplexSystem::Family::Family(std::shared_ptr<const StencilFamily> family)
-    : vertices_(family->pattern().size()),
-      family_(std::move(family)),
-      linear_(false),
+    : family_(std::move(family)),
+      vertices_(family_->pattern().size()),
+      size_(family_->size()),
       reads_time_(family_->is_placed()) {
-  coupled_.assign(at(size()) * at(size()), 1), varying_ = coupled_;
+  coupled_.assign(at(size_) * at(size_), 1);
 }
 
 ComplexShape ComplexSystem::Family::shape(int values_of_site) const {
@@ -102,21 +98,38 @@ int ComplexSystem::Family::add_table(std::span<const TablePoint> points) {
   }
   if (!same)
     throw BadInput("lattice.mesh", "a table of another form than the first of its family; make it one more family");
-  if (!is_placed()) return jets_->add_own(numbers);
   tables_.push_back(std::move(numbers));
   return static_cast<int>(tables_.size()) - 1;
 }
 
-int ComplexSystem::Family::add_numbers(int table, std::span<const Complex::Position> vertices) {
-  if (!jets_ || !is_placed()) return table;
-  std::vector<double> numbers = tables_[table];
+std::vector<double> ComplexSystem::Family::places(std::span<const Complex::Position> vertices) const {
+  std::vector<double> places;
   for (const auto& weights : places_)
     for (const std::size_t coordinate : {1U, 0U}) {
       double place = 0;
       for (const auto& [vertex, weight] : weights) place += weight * vertices[vertex][coordinate];
-      numbers.push_back(place);
+      places.push_back(place);
     }
-  return jets_->add_own(numbers);
+  return places;
+}
+
+/// The tables of some stencils: measures are in the weights of points, and steps in those of derivatives in time.
+std::shared_ptr<const JetFamily> ComplexSystem::Family::on(std::shared_ptr<const ListedStencils> sites,
+                                                           const Stencils& stencils) const {
+  OwnWeights own{std::move(sites), std::vector<std::vector<double>>(powers_.size())};
+  for (std::size_t n = 0; n < powers_.size(); ++n)
+    for (std::size_t s = 0; s < stencils.tables.size(); ++s) {
+      double number = tables_[stencils.tables[s]][n];
+      for (int power = powers_[n].time; power > 0; --power) number /= stencils.steps[s];
+      own.numbers[n].push_back(number);
+    }
+  for (const TablePoint& point : table_.points)
+    for (std::size_t s = 0; s < stencils.measures.size(); ++s) own.numbers[point.own.weight][s] *= stencils.measures[s];
+  for (std::size_t n = 0; is_placed() && n < 2 * form_.size(); ++n) {
+    own.numbers.emplace_back();
+    for (const auto& places : stencils.places) own.numbers.back().push_back(places[n]);
+  }
+  return std::make_shared<JetFamily>(table_, density_, false, std::move(own));
 }
 
 int ComplexSystem::add_family(Family family) {
@@ -126,15 +139,58 @@ int ComplexSystem::add_family(Family family) {
 }
 
 int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table, double measure, double time_step) {
-  Family& of = families_[family];
-  std::vector<Complex::Position> positions;
-  const std::size_t per_vertex = sites.size() / at(of.vertices_);
-  for (std::size_t l = 0; of.is_placed() && l < sites.size(); l += per_vertex)
-    positions.push_back(complex_.position(sites[l]));
-  numbers_.push_back(of.add_numbers(table, positions));
-  measures_.push_back(measure);
-  time_steps_.push_back(time_step);
-  return complex_.add_stencil(family, sites);
+  const int number = complex_.add_stencil(family, sites);
+  row_.reset();
+  const Family& of = families_[family];
+  std::vector<double> places, alike;  // `alike`: what stencils of one batch share
+  if (of.density_ && of.is_placed()) {
+    std::vector<Complex::Position> positions;
+    const std::size_t per_vertex = sites.size() / at(of.vertices_);
+    for (std::size_t l = 0; l < sites.size(); l += per_vertex) positions.push_back(complex_.position(sites[l]));
+    places = of.places(positions);
+    for (std::size_t n = 1; n < places.size() && of.reads_time_; n += 2) alike.push_back(places[n]);
+  }
+  const double time = complex_.position(sites[0])[0];
+  if (!of.density_) alike = {time_step, of.reads_time_ ? time : 0};
+  const auto [list, fresh] = list_of_.try_emplace({family, std::move(alike)}, static_cast<std::int32_t>(lists_.size()));
+  if (fresh) lists_.push_back({.family = family, .step = time_step, .time = time});
+  Stencils& to = lists_[list->second];
+  anchors_.push_back({list->second, static_cast<std::int32_t>(to.numbers.size())});
+  to.sites.insert(to.sites.end(), sites.begin(), sites.end());
+  to.tables.push_back(table), to.numbers.push_back(number), to.measures.push_back(measure);
+  to.steps.push_back(time_step);
+  if (!places.empty()) to.places.push_back(std::move(places));
+  return number;
+}
+
+std::shared_ptr<const StencilFamily> ComplexSystem::family_on_row(const Stencils& stencils,
+                                                                  std::shared_ptr<const JetFamily>& tables) const {
+  const Family& of = families_[stencils.family];
+  const int sites = of.size() / components_;
+  auto listed = std::make_shared<ListedStencils>(sites, stencils.sites, complex_.sites());
+  if (of.density_) {
+    tables = of.on(listed, stencils);
+    if (components_ == of.density_->components()) return tables;
+    return std::make_shared<FamilyOnSites>(tables, components_, listed, std::nullopt);
+  }
+  return std::make_shared<FamilyOnSites>(
+      of.family_, components_, listed,
+      FamilyOnSites::Moved{{stencils.step, 1, stencils.time, 0}, stencils.tables, stencils.measures});
+}
+
+const LatticeSystem& ComplexSystem::row() const {
+  if (row_) return *row_;
+  MeshSpace space{.mesh = {.points = {}, .vertices = {}}, .fixed = std::vector<char>(complex_.sites(), 0)};
+  for (int s = 0; s < complex_.sites(); ++s) {
+    const auto& [t, x, y, z] = complex_.position(s);
+    space.mesh.points.push_back({x, y, z});
+  }
+  std::vector<std::shared_ptr<const StencilFamily>> families;
+  tables_.assign(lists_.size(), nullptr);
+  for (std::size_t n = 0; n < lists_.size(); ++n) families.push_back(family_on_row(lists_[n], tables_[n]));
+  row_ = std::make_shared<LatticeSystem>(Lattice::on(std::make_shared<MeshSpace>(std::move(space))),
+                                         std::move(families), 1.0, fields(components_));
+  return *row_;
 }
 
 std::size_t ComplexSystem::bytes() const {
@@ -149,100 +205,65 @@ std::vector<std::int32_t> ComplexSystem::all_stencils() const {
   return all;
 }
 
-template <class Evaluate>
-void ComplexSystem::each(Stencils stencils, std::span<const double> y, int power, const Evaluate& evaluate,
-                         const Visit& visit, const StencilReading& reading) const {
-  std::size_t begin = 0;  // of a stencil, in places
-  std::array<int, most> numbers;
-  const ScratchRows x(1, most);
-  std::fill_n(x[0], most, 0.0);  // points have places of their own
-  for (std::size_t first = 0; first < stencils.size();) {
-    const int shape = complex_.shape_number(stencils[first]);
-    const Family& of = family(shape);
-    const std::size_t size = of.size();
-    // A batch has one time step, and one time.
-    const double step = time_steps_[stencils[first]];
-    std::size_t end = first + 1;
-    while (end < stencils.size() && end - first < most && complex_.shape_number(stencils[end]) == shape &&
-           time_steps_[stencils[end]] == step && !of.reads_time())
-      ++end;
-    const Stencils batch = stencils.subspan(first, end - first);
-    const std::size_t count = (batch.size() + lanes - 1) / lanes * lanes, rows = power == 0   ? 1
-                                                                                 : power == 1 ? size
-                                                                                              : size * size;
-    const ScratchRows values(of.size(), static_cast<int>(count)),
-        results(static_cast<int>(rows), static_cast<int>(count)), out(static_cast<int>(rows), most);
-    for (std::size_t s = 0; s < count; ++s) {  // the last one fills whole packs
-      const std::size_t n = std::min(s, batch.size() - 1);
-      numbers[s] = numbers_[batch[n]];
-      for (std::size_t i = 0; i < size; ++i)
-        values[static_cast<int>(i)][s] =
-            y[reading.places.empty() ? node(batch[n], static_cast<int>(i)) : at(reading.places[begin + n * size + i])];
-    }
-    begin += batch.size() * size;
-    const double first_time = of.jets_ ? 0 : complex_.position(complex_.vertices(batch[0])[0])[0];
-    evaluate(of,
-             StencilBatch{{step, 1, reading.time.value_or(first_time), 0},
-                          static_cast<int>(count),
-                          x[0],
-                          values[0],
-                          nullptr,
-                          numbers.data()},
-             results[0]);
-    for (std::size_t r = 0; r < rows; ++r)
-      for (std::size_t s = 0; s < batch.size(); ++s)  // |Δ| in place of the area h k of the table
-        out[static_cast<int>(r)][s] = measures_[batch[s]] / (of.jets_ ? step : 1) * results[static_cast<int>(r)][s];
-    visit(batch, out[0]);
-    first = end;
-  }
+Assembly ComplexSystem::assembly(std::span<const std::int32_t> stencils) const {
+  std::vector<Assembly::Anchor> anchors;
+  for (const auto s : stencils) anchors.push_back(anchor(s));
+  return {row(), {.equations = {}, .stencils = std::move(anchors)}};
 }
 
-void ComplexSystem::each_lagrangian(Stencils s, std::span<const double> y, const Visit& visit,
-                                    const StencilReading& reading) const {
-  each(
-      s, y, 0, [](const Family& of, const StencilBatch& batch, double* out) { of.family_->lagrangian(batch, out); },
-      visit, reading);
+namespace {
+
+SectionView one_row(std::span<const double> y) { return {y.data(), 1, y.size()}; }
+
+}  // namespace
+
+void ComplexSystem::each_residual(std::span<const std::int32_t> stencils, std::span<const double> y,
+                                  const Visit& visit) const {
+  assembly(stencils).each_residual(one_row(y), 0, [&](const Assembly::Local& at) { visit(stencil(at.anchor), at); });
 }
-void ComplexSystem::each_energy(Stencils s, std::span<const double> y, const Visit& visit) const {
-  each(s, y, 0, [](const Family& of, const StencilBatch& batch, double* out) { of.jets_->energy(batch, out); }, visit,
-       {});
+
+void ComplexSystem::each_jacobian(std::span<const std::int32_t> stencils, std::span<const double> y,
+                                  const Visit& visit) const {
+  assembly(stencils).each_jacobian(one_row(y), 0, [&](const Assembly::Local& at) { visit(stencil(at.anchor), at); });
 }
-void ComplexSystem::each_residual(Stencils s, std::span<const double> y, const Visit& visit,
-                                  const StencilReading& reading) const {
-  each(
-      s, y, 1, [](const Family& of, const StencilBatch& batch, double* out) { of.family_->residual(batch, out); },
-      visit, reading);
+
+std::vector<double> ComplexSystem::lagrangians(std::span<const double> y) const {
+  std::vector<double> all(complex_.stencils());
+  const ScratchRows L(1, 64);
+  for (std::size_t list = 0; list < lists_.size(); ++list)
+    each_listed_strip(*row().families()[list], y, components_, 0, [&](const StencilBatch& strip, int count) {
+      row_->families()[list]->lagrangian(strip, L[0]);
+      for (int s = 0; s < count; ++s) all[lists_[list].numbers[strip.numbers[s]]] = L[0][s];
+    });
+  return all;
 }
-void ComplexSystem::each_jacobian(Stencils s, std::span<const double> y, const Visit& visit,
-                                  const StencilReading& reading) const {
-  each(
-      s, y, 2,
-      [](const Family& of, const StencilBatch& batch, double* out) {
-        std::vector<int> all(of.size());
-        std::iota(all.begin(), all.end(), 0);
-        of.family_->jacobian(batch, all, all, out);
-      },
-      visit, reading);
+
+std::vector<double> ComplexSystem::energies(std::span<const double> y) const {
+  std::vector<double> all(complex_.stencils());
+  const ScratchRows E(1, 64);
+  for (std::size_t list = 0; list < lists_.size(); ++list)
+    each_listed_strip(*row().families()[list], y, components_, 0, [&](const StencilBatch& strip, int count) {
+      tables_[list]->energy(strip, E[0]);
+      for (int s = 0; s < count; ++s) all[lists_[list].numbers[strip.numbers[s]]] = E[0][s];
+    });
+  return all;
 }
 
 std::vector<Balance> ComplexSystem::residual(std::span<const double> y) const {
   std::vector<Balance> E(nodes());
-  each_residual(all_stencils(), y, [&](Stencils batch, const double* r) {
-    const int size = family_of(batch[0]).size();
-    for (std::size_t s = 0; s < batch.size(); ++s)
-      for (int i = 0; i < size; ++i) E[node(batch[s], i)].add(r[at(i) * most + s]);
+  each_residual(all_stencils(), y, [&](int, const Assembly::Local& here) {
+    for (std::size_t i = 0; i < here.places.size(); ++i) E[here.places[i]].add(here.derivatives[i]);
   });
   return E;
 }
 
 std::vector<double> ComplexSystem::sizes(std::span<const double> y) const {
   std::vector<double> size(nodes(), 0.0);
-  each_jacobian(all_stencils(), y, [&](Stencils batch, const double* J) {
-    const int count = family_of(batch[0]).size();
-    for (std::size_t s = 0; s < batch.size(); ++s)
-      for (int i = 0; i < count; ++i)
-        for (int m = 0; m < count; ++m)
-          size[node(batch[s], i)] += std::abs(J[at((i * count + m) * most) + s] * y[node(batch[s], m)]);
+  each_jacobian(all_stencils(), y, [&](int, const Assembly::Local& here) {
+    const std::size_t count = here.places.size();
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t m = 0; m < count; ++m)
+        size[here.places[i]] += std::abs(here.derivatives[i * count + m] * here.y[m]);
   });
   return size;
 }

@@ -1,34 +1,31 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
-#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lattice/complex/complex.hpp"
 #include "lattice/index.hpp"
 #include "schemes/families/jet_family.hpp"
+#include "schemes/system/assembly.hpp"
 #include "schemes/verify/check.hpp"
 
 namespace delf {
-
-/// How a ComplexSystem reads stencils.
-struct StencilReading {
-  /// Not empty: y holds some nodes alone, and here each value of each stencil.
-  std::span<const std::int32_t> places = {};
-  std::optional<double> time = {};  ///< of all of them, in place of that of their sites
-};
 
 /// The field equations of a complex of stencils,
 ///
 ///     E(site) = Σ_{l: Δˡ = site} rˡ(y_Δ),    y[site·d + a],                     Marsden–Patrick–Shkoller (5.2)
 ///
-/// with their Jacobian, and the action. Stencils are evaluated in batches of a family.
+/// A complex is a space of one row: its sites are those of the row, its stencils are listed, and what repeats on a lattice
+/// are numbers of their own here. So equations, plan and checks are those of a LatticeSystem.
 class ComplexSystem {
- public:
-  static constexpr int most = 64;  ///< stencils at once
+  struct Stencils;
 
+ public:
   /// Stencils that lie anywhere: a family whose tables differ from stencil to stencil in their numbers, and not in their form.
   /// L has the measure |Δ| of the stencil as a factor; weights of φ_t are per its time step, and those of φ_x of the coordinates
   /// themselves.
@@ -46,40 +43,34 @@ class ComplexSystem {
     int add_table(std::span<const TablePoint>);
 
     int vertices() const { return vertices_; }
-    int size() const { return family_->size(); }
+    int size() const { return size_; }
     /// Which values feel each other, where a site of the complex holds so many of them.
     ComplexShape shape(int values_of_site) const;
-    /// ∂r/∂y is proved to be the same at all y: the equations of these stencils are linear.
-    bool is_linear() const { return linear_; }
-    /// The equations of the stencils depend on t.
-    bool reads_time() const { return reads_time_; }
-    /// ∂r/∂y of value m in the equation of value i is not proved to be the same at all y.
-    bool is_varying(int i, int m) const { return varying_[i * size() + m] != 0; }
 
    private:
     friend class ComplexSystem;
-    bool is_placed() const { return density_ && density_->is_placed(); }
-    /// Numbers of a stencil, those of a table and the places of its points.
-    int add_numbers(int table, std::span<const Complex::Position> vertices);
+    bool is_placed() const { return density_ ? density_->is_placed() : family_->is_placed(); }
+    /// The place and the time of each point, of a stencil with these vertices.
+    std::vector<double> places(std::span<const Complex::Position> vertices) const;
+    std::shared_ptr<const JetFamily> on(std::shared_ptr<const ListedStencils>, const Stencils&) const;
 
     std::shared_ptr<const BatchDensity> density_;  ///< null: no tables
-    int vertices_;
-    std::shared_ptr<JetFamily> jets_;  ///< null: no tables
-    std::shared_ptr<const StencilFamily> family_;
+    std::shared_ptr<const StencilFamily> family_;  ///< null: tables
+    int vertices_, size_;
+    StencilTable table_ = {.pattern = {}, .points = {}};  ///< whose own numbers are those of a table, then the places
     std::vector<std::vector<TablePoint::Entry>> places_;  ///< of the points: weights of the vertices
     std::vector<TablePoint> form_;
-    std::vector<std::vector<double>>
-        tables_;  ///< of a density that is placed: numbers that stencils have besides their places
-    std::vector<char> coupled_, varying_;  ///< [i·size + m]
-    bool linear_ = true, reads_time_ = false;
+    std::vector<SlotPowers> powers_;  ///< of each number of a table
+    std::vector<std::vector<double>> tables_;
+    std::vector<char> coupled_;  ///< [i·size + m]
+    bool reads_time_ = false;
   };
 
   explicit ComplexSystem(int components) : components_(components) {}
 
   /// So many are to be added: see Complex.
   void reserve(std::size_t sites, std::size_t stencils, std::size_t vertices) {
-    complex_.reserve(sites, stencils, vertices);
-    numbers_.reserve(stencils), measures_.reserve(stencils), time_steps_.reserve(stencils);
+    complex_.reserve(sites, stencils, vertices), anchors_.reserve(stencils);
   }
   int add_site(const Complex::Position& position, SiteRole role = SiteRole::free) {
     return complex_.add_site(position, role);
@@ -98,34 +89,52 @@ class ComplexSystem {
   const Family& family_of(int stencil) const { return family(complex_.shape_number(stencil)); }
   std::size_t bytes() const;
 
-  /// All stencils, or those of a list, in batches of one family: visit(stencils of the batch, its numbers[i·most + s]).
-  using Stencils = std::span<const std::int32_t>;
-  using Visit = std::function<void(Stencils, const double*)>;
-  void each_lagrangian(Stencils, std::span<const double> y, const Visit&, const StencilReading& = {}) const;
-  /// φ_t ∂ℓ/∂φ_t − ℓ of each stencil, with its measure and weights; of families with tables.
-  void each_energy(Stencils, std::span<const double> y, const Visit&) const;
-  void each_residual(Stencils, std::span<const double> y, const Visit&, const StencilReading& = {}) const;
-  void each_jacobian(Stencils, std::span<const double> y, const Visit&, const StencilReading& = {}) const;
-  std::vector<std::int32_t> all_stencils() const;
+  /// The row, made when it is first asked for. Its families are those of here, one for each time or step where stencils of
+  /// one batch must share it.
+  const LatticeSystem& row() const;
+  /// Of a stencil, as the row has it.
+  Assembly::Anchor anchor(int stencil) const { return {anchors_[stencil].list, {0, anchors_[stencil].number}}; }
+  /// An assembler of some stencils without equations.
+  Assembly assembly(std::span<const std::int32_t> stencils) const;
 
-  /// The node that value i of a stencil is.
-  std::size_t node(int stencil, int i) const {
-    return at(complex_.vertices(stencil)[i / components_]) * at(components_) + at(i % components_);
-  }
+  /// The stencils of a list, or all of them, sorted by their anchors: visit(stencil, its values, r or ∂r/∂y).
+  using Visit = std::function<void(int stencil, const Assembly::Local&)>;
+  void each_residual(std::span<const std::int32_t> stencils, std::span<const double> y, const Visit&) const;
+  void each_jacobian(std::span<const std::int32_t> stencils, std::span<const double> y, const Visit&) const;
+  std::vector<std::int32_t> all_stencils() const;
+  /// L of each stencil.
+  std::vector<double> lagrangians(std::span<const double> y) const;
+  /// φ_t ∂ℓ/∂φ_t − ℓ of each stencil, with its measure and weights; of families with tables.
+  std::vector<double> energies(std::span<const double> y) const;
+
   /// E at every node, whether or not it holds there.
   std::vector<Balance> residual(std::span<const double> y) const;
   /// Σ |∂E/∂y y| at every node: what the terms of E have cancelled within stencils too.
   std::vector<double> sizes(std::span<const double> y) const;
 
  private:
-  template <class Evaluate>
-  void each(Stencils, std::span<const double> y, int power, const Evaluate&, const Visit&, const StencilReading&) const;
+  /// Some stencils of a family that can be one batch.
+  struct Stencils {
+    int family;
+    double step, time;                                                ///< of a family without tables
+    std::vector<std::int32_t> sites = {}, tables = {}, numbers = {};  ///< `numbers`: of the stencils in the complex
+    std::vector<double> measures = {}, steps = {};
+    std::vector<std::vector<double>> places = {};  ///< of the points of a table
+  };
+  struct Place {
+    std::int32_t list, number;
+  };
+  int stencil(const Assembly::Anchor& anchor) const { return lists_[anchor.family].numbers[anchor.site.space]; }
+  std::shared_ptr<const StencilFamily> family_on_row(const Stencils&, std::shared_ptr<const JetFamily>&) const;
 
   int components_;
   Complex complex_;
-  std::vector<Family> families_;       ///< its number is the number of its shape
-  std::vector<std::int32_t> numbers_;  ///< of each stencil: where its own are
-  std::vector<double> measures_, time_steps_;
+  std::vector<Family> families_;  ///< its number is the number of its shape
+  std::vector<Stencils> lists_;   ///< a family of the row each
+  std::map<std::pair<int, std::vector<double>>, std::int32_t> list_of_;
+  std::vector<Place> anchors_;  ///< of each stencil
+  mutable std::shared_ptr<const LatticeSystem> row_;
+  mutable std::vector<std::shared_ptr<const JetFamily>> tables_;  ///< of the row's families, those that have tables
 };
 
 /// What |E| is relative to: the largest sum of absolute terms where an equation holds, since a vacuum has no scale of its own.

@@ -50,9 +50,8 @@ std::vector<SlabEnergy> slab_energies(const StencilList& list, const std::shared
   const ComplexSystem system = spacetime_complex(cells, density);
   std::vector<SlabEnergy> slabs(rows.size() - 1);
   const auto time = [&](std::size_t j) { return list.sites[rows[j].front()].position[0]; };
-  system.each_energy(system.all_stencils(), y, [&](ComplexSystem::Stencils batch, const double* E) {
-    for (std::size_t s = 0; s < batch.size(); ++s) slabs[at(batch[s]) / in_slab].energy += E[s];
-  });
+  const std::vector<double> energies = system.energies(y);
+  for (std::size_t n = 0; n < energies.size(); ++n) slabs[n / in_slab].energy += energies[n];
   for (std::size_t j = 0; j < slabs.size(); ++j) slabs[j].time = time(j + 1), slabs[j].energy /= time(j + 1) - time(j);
   return slabs;
 }

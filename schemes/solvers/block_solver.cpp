@@ -10,6 +10,7 @@
 #include "lattice/index.hpp"
 #include "lattice/plan/block_order.hpp"
 #include "schemes/solvers/band_lu.hpp"
+#include "schemes/solvers/sitewise_lu.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 
 namespace delf {
@@ -47,7 +48,7 @@ std::vector<int> banded_places(int n, BlockSolver::Entries entries) {
 
 }  // namespace
 
-/// A block that is too large to be dense: a band, or sparse where the band is too wide.
+/// A block that is too large to be dense: a band, or sparse where the band is too wide or unknowns have sites.
 struct BlockSolver::Large {
   int size;
   std::vector<int> places;  ///< of the unknowns in the band
@@ -55,6 +56,7 @@ struct BlockSolver::Large {
   Eigen::SparseMatrix<double> matrix;
   std::vector<int> where;  ///< of the entries, in the numbers of the band or of the matrix
   std::unique_ptr<SparseLU> sparse;
+  std::optional<SitewiseLU> sitewise;
   mutable Eigen::VectorXd x;
 
   Large(int n, Entries entries) : size(n), places(banded_places(n, entries)) {
@@ -68,12 +70,15 @@ struct BlockSolver::Large {
     for (const Entry& e : entries) where.push_back(band->place(places[e.row], places[e.column]));
   }
 
+  Large(SitewiseLU solver, int n, Entries entries) : size(n), sitewise(std::move(solver)) { prepare(entries); }
+
   bool factor(const std::vector<double>& values, Entries entries) {
-    if (!band && !sparse) prepare(entries);
+    if (!band && !sparse && !sitewise) prepare(entries);
     if (band) band->set_zero();
     double* const numbers = band ? band->numbers() : matrix.valuePtr();
     for (std::size_t e = 0; e < entries.size(); ++e) numbers[where[e]] = values[entries[e].place];
     if (band) return band->factor();
+    if (sitewise) return sitewise->factorize(matrix);
     sparse->factorize(matrix);
     return sparse->info() == Eigen::Success;
   }
@@ -89,6 +94,7 @@ struct BlockSolver::Large {
       const int* last = matrix.innerIndexPtr() + matrix.outerIndexPtr()[e.column + 1];
       where.push_back(static_cast<int>(std::lower_bound(first, last, e.row) - matrix.innerIndexPtr()));
     }
+    if (sitewise) return;
     sparse = std::make_unique<SparseLU>();
     sparse->analyzePattern(matrix);
   }
@@ -97,7 +103,9 @@ struct BlockSolver::Large {
   void solve(double* part) const {
     double* const result = part + size;
     if (!band) {
-      x = sparse->solve(Eigen::Map<const Eigen::VectorXd>(part, size));
+      const Eigen::Map<const Eigen::VectorXd> b(part, size);
+      if (sitewise) x = sitewise->solve(b);
+      else x = sparse->solve(b);
       std::copy_n(x.data(), size, result);
       return;
     }
@@ -109,6 +117,7 @@ struct BlockSolver::Large {
 
   std::size_t bytes() const {
     std::size_t total = (band ? band->bytes() : 0) + (places.size() + where.size()) * sizeof(int);
+    if (sitewise) total += at(matrix.nonZeros()) * (sizeof(double) + sizeof(int));
     if (sparse) total += at(matrix.nonZeros() + sparse->nnzL() + sparse->nnzU()) * (sizeof(double) + sizeof(int));
     return total;
   }
@@ -130,13 +139,32 @@ BlockSolver::BlockSolver(int n, const std::vector<std::pair<int, int>>& places, 
     members.emplace_back(at(n));
     std::iota(members[0].begin(), members[0].end(), 0);
   }
+  prepare(members, places, present, nullptr);
+}
+
+BlockSolver::BlockSolver(const std::vector<int>& first, const std::vector<std::pair<int, int>>& places,
+                         std::vector<char> present, const Sites& sites) {
+  std::vector<std::vector<int>> members;
+  std::vector<int> block;
+  for (std::size_t b = 0; b + 1 < first.size(); ++b) {
+    members.emplace_back(at(first[b + 1] - first[b]));
+    std::iota(members[b].begin(), members[b].end(), first[b]);
+    block.insert(block.end(), members[b].size(), static_cast<int>(b));
+  }
+  for (std::size_t p = 0; p < places.size(); ++p)
+    if (block[places[p].first] != block[places[p].second]) present[p] = false;
+  prepare(members, places, present, &sites);
+}
+
+void BlockSolver::prepare(const std::vector<std::vector<int>>& members, const std::vector<std::pair<int, int>>& places,
+                          const std::vector<char>& present, const Sites* sites) {
   for (const auto& block : members) {
     const int size = static_cast<int>(block.size());
     blocks_.push_back({.first = static_cast<int>(members_.size()), .size = size});
     largest_ = std::max(largest_, size);
     members_.insert(members_.end(), block.begin(), block.end());
   }
-  list_entries(n, places, present);
+  list_entries(static_cast<int>(members_.size()), places, present);
   pivots_.resize(members_.size());
   part_.resize(2 * largest_);
   std::size_t factors = 0;
@@ -147,7 +175,17 @@ BlockSolver::BlockSolver(int n, const std::vector<std::pair<int, int>>& places, 
       continue;
     }
     b.large = static_cast<int>(large_.size());
-    large_.push_back(std::make_unique<Large>(b.size, Entries(inside_).subspan(b.inside, b.inside_end - b.inside)));
+    const Entries entries = Entries(inside_).subspan(b.inside, b.inside_end - b.inside);
+    if (!sites) {
+      large_.push_back(std::make_unique<Large>(b.size, entries));
+      continue;
+    }
+    std::vector<int> of_rows, of_columns;
+    for (int i = b.first; i < b.first + b.size; ++i) {
+      of_rows.push_back(sites->of_rows[members_[i]]);
+      of_columns.push_back(sites->of_columns[members_[i]]);
+    }
+    large_.push_back(std::make_unique<Large>(SitewiseLU(std::move(of_rows), std::move(of_columns)), b.size, entries));
   }
   factors_.resize(factors);
 }

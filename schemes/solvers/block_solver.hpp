@@ -17,6 +17,13 @@ class BlockSolver {
   /// `places`: (row, column) of each entry. With `matched`, row n is solved for column n, and the blocks are found from
   /// that; without, all is one block. A place that is not `present` is zero whatever its value says.
   BlockSolver(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present, bool matched);
+  /// Blocks that are known, one after the other, of as many rows as columns: entries between blocks are zero. Rows and
+  /// columns lie at sites, by which large blocks are eliminated.
+  struct Sites {
+    std::vector<int> of_rows, of_columns;
+  };
+  BlockSolver(const std::vector<int>& first, const std::vector<std::pair<int, int>>& places, std::vector<char> present,
+              const Sites&);
   ~BlockSolver();
   BlockSolver(BlockSolver&&) noexcept;
   BlockSolver& operator=(BlockSolver&&) noexcept;
@@ -51,6 +58,8 @@ class BlockSolver {
   };
   static constexpr int largest_dense = 24;
 
+  void prepare(const std::vector<std::vector<int>>& blocks, const std::vector<std::pair<int, int>>& places,
+               const std::vector<char>& present, const Sites*);
   void list_entries(int n, const std::vector<std::pair<int, int>>& places, const std::vector<char>& present);
   bool factor_dense(const Block&, const std::vector<double>& values);
   void solve_dense(const Block&) const;

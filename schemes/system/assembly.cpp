@@ -15,27 +15,28 @@
 namespace delf {
 namespace {
 
-/// Numbers of nodes, looked up by their place: −1 where there is none.
+/// Numbers of nodes, looked up by their place between the first and the last column that has one: −1 where there is none.
 class NodeNumbers {
  public:
-  NodeNumbers(const std::vector<Node>& nodes, int copies, int sites, int components) : components_(components) {
+  NodeNumbers(const std::vector<Node>& nodes, int copies, int components) : components_(components) {
     if (nodes.empty()) return;
     const auto [low, high] = std::ranges::minmax(nodes, {}, [](const Node& n) { return n.site.time; });
-    low_ = low.site.time, high_ = high.site.time, row_ = sites * components;
-    numbers_.assign(at(high_ - low_ + 1) * at(row_), -1);
+    const auto [left, right] = std::ranges::minmax(nodes, {}, [](const Node& n) { return n.site.space; });
+    low_ = low.site.time, high_ = high.site.time, left_ = left.site.space, right_ = right.site.space;
+    numbers_.assign(at(high_ - low_ + 1) * at((right_ - left_ + 1) * components), -1);
     const std::size_t count = nodes.size() / at(copies);
     for (std::size_t n = 0; n < nodes.size(); ++n)
       numbers_[index(nodes[n].site.time, nodes[n].site.space, nodes[n].component)] = static_cast<int>(n % count);
   }
   int operator()(int row, int site, int component) const {
-    return row < low_ || row > high_ ? -1 : numbers_[index(row, site, component)];
+    return row < low_ || row > high_ || site < left_ || site > right_ ? -1 : numbers_[index(row, site, component)];
   }
 
  private:
   std::size_t index(int row, int site, int component) const {
-    return at(row - low_) * at(row_) + at(site * components_ + component);
+    return (at(row - low_) * at(right_ - left_ + 1) + at(site - left_)) * at(components_) + at(component);
   }
-  int components_, low_ = 0, high_ = -1, row_ = 0;
+  int components_, low_ = 0, high_ = -1, left_ = 0, right_ = -1;
   std::vector<int> numbers_;
 };
 
@@ -197,8 +198,8 @@ void Assembly::list_stencils(const LatticeSystem& system) {
 
 void Assembly::list_reads(const LatticeSystem& system) {
   const Lattice& lattice = system.lattice();
-  const NodeNumbers unknown_at(parts_.unknowns, parts_.copies, lattice.sites(), components_);
-  const NodeNumbers equation_at(parts_.equations, 1, lattice.sites(), components_);
+  const NodeNumbers unknown_at(parts_.unknowns, parts_.copies, components_);
+  const NodeNumbers equation_at(parts_.equations, 1, components_);
   std::vector<std::vector<int>> unknown(batches_.size());
   int largest = 0;
   for (std::size_t n = 0; n < batches_.size(); ++n) {
@@ -612,10 +613,16 @@ bool Assembly::constant_jacobian(std::vector<double>& values) const {
 }
 
 bool Assembly::is_linear() const {
-  for (const Batch& b : batches_)
+  for (const Batch& b : batches_) {
+    auto entry = b.entry.begin();
     for (const int i : b.equations)
-      for (const int m : b.unknowns)
-        if (!b.family->is_constant(i, m)) return false;
+      for (const int m : b.unknowns) {
+        const auto end = entry + b.padded;
+        if (!b.family->is_constant(i, m) && std::any_of(entry, end, [&](int e) { return at(e) < places_.size(); }))
+          return false;
+        entry = end;
+      }
+  }
   return true;
 }
 

@@ -2,7 +2,6 @@
 #include "schemes/system/mesh_energy.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <numeric>
@@ -14,6 +13,7 @@
 #include "lattice/index.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/system/legendre.hpp"
+#include "schemes/system/listed_strips.hpp"
 #include "schemes/system/stress_energy.hpp"
 
 namespace delf {
@@ -27,24 +27,13 @@ MeshEnergy::MeshEnergy(std::shared_ptr<const BatchDensity> density, const MeshSp
 }
 
 double MeshEnergy::of_cells(std::span<const double> values, double t) const {
-  const std::size_t d = density_->components();
-  constexpr int most = 64;  // cells at once
-  const ScratchRows x(1, most), L(1, most);
-  std::fill_n(x[0], most, 0.0);  // cells have places of their own
+  const ScratchRows L(1, 64);
   double sum = 0;
-  for (const auto& family : cells_) {
-    const int cells = family->listed()->size();
-    for (int first = 0; first < cells; first += most) {
-      const int own = std::min(most, cells - first), count = (own + lanes - 1) / lanes * lanes;
-      std::array<int, most> numbers{};
-      for (int s = 0; s < count; ++s) numbers[s] = first + std::min(s, own - 1);
-      const ScratchRows y(family->size(), count);
-      for (int i = 0; i < family->size(); ++i)
-        for (int s = 0; s < count; ++s) y[i][s] = values[at(family->column(numbers[s], i)) * d + at(i) % d];
-      family->lagrangian(StencilBatch{{1, 1, t, 0}, count, x[0], y[0], nullptr, numbers.data()}, L[0]);
-      sum += std::accumulate(L[0], L[0] + own, 0.0);
-    }
-  }
+  for (const auto& family : cells_)
+    each_listed_strip(*family, values, density_->components(), t, [&](const StencilBatch& cells, int count) {
+      family->lagrangian(cells, L[0]);
+      sum += std::accumulate(L[0], L[0] + count, 0.0);
+    });
   return sum;
 }
 

@@ -49,15 +49,10 @@ StaticField::StaticField(const ComplexScene& scene)
 
 double StaticField::energy() const {
   double sum = 0;
-  const auto add = [&](double sign) {
-    return [&, sign](ComplexSystem::Stencils batch, const double* L) {
-      for (std::size_t s = 0; s < batch.size(); ++s)
-        if (sign > 0 || system().family_of(batch[s]).vertices() > 1) sum -= sign * L[s];
-    };
-  };
-  const std::vector<double> zero(y_.size(), 0.0);  // ℓ(0, 0, 0) is in the gradients too, where it is no energy
-  system().each_lagrangian(system().all_stencils(), y_, add(1));
-  system().each_lagrangian(system().all_stencils(), zero, add(-1));
+  // ℓ(0, 0, 0) is in the gradients too, where it is no energy
+  const std::vector<double> zero(y_.size(), 0.0), L = system().lagrangians(y_), L0 = system().lagrangians(zero);
+  for (std::size_t s = 0; s < L.size(); ++s)
+    sum -= L[s] - (system().family_of(static_cast<int>(s)).vertices() > 1 ? L0[s] : 0);
   return sum;
 }
 

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 /// A sparse LU factorisation whose unknowns are eliminated place by place. The order of places is one of least degree of
@@ -19,11 +21,19 @@ class SitewiseLU {
   using Matrix = Eigen::SparseMatrix<double>;
   using Vector = Eigen::VectorXd;
 
-  /// The place of each equation and of each unknown, from 0 to places − 1.
-  SitewiseLU(std::vector<int> of_equations, std::vector<int> of_unknowns, int places)
-      : of_equations_(std::move(of_equations)), of_unknowns_(std::move(of_unknowns)), places_(places) {}
+  /// The place of each equation and of each unknown, by numbers that are not negative.
+  SitewiseLU(std::vector<int> of_equations, std::vector<int> of_unknowns)
+      : of_equations_(std::move(of_equations)), of_unknowns_(std::move(of_unknowns)) {
+    std::vector<int> number;  // of a place, in the order of unknowns
+    for (auto* places : {&of_unknowns_, &of_equations_})
+      for (int& place : *places) {
+        if (number.size() <= at(place)) number.resize(at(place) + 1, -1);
+        if (number[place] < 0) number[place] = places_++;
+        place = number[place];
+      }
+  }
 
-  /// Whether it went well. All matrices have the pattern of the first.
+  /// False where A is singular. All matrices have the pattern of the first.
   bool factorize(const Matrix& A) {
     if (!lu_) {
       find_order(A);
@@ -57,7 +67,7 @@ class SitewiseLU {
   }
 
   std::vector<int> of_equations_, of_unknowns_;
-  int places_;
+  int places_ = 0;
   Order order_;
   std::unique_ptr<Factors> lu_;
 };

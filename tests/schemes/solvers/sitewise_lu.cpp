@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/complex/sitewise_lu.hpp"
+#include "schemes/solvers/sitewise_lu.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ struct Saddle {
 TEST_CASE("saddles with a multiplier at each site are solved place by place, and a singular one is told") {
   constexpr int n = 20;
   const Saddle saddle(n);
-  SitewiseLU lu(saddle.of_equations, saddle.of_unknowns, n * n);
+  SitewiseLU lu(saddle.of_equations, saddle.of_unknowns);
   REQUIRE(lu.factorize(saddle.A));
   Vector x(3 * n * n);
   for (Eigen::Index u = 0; u < x.size(); ++u) x[u] = std::sin(1.0 + static_cast<double>(u * u));
