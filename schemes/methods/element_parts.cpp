@@ -15,7 +15,6 @@
 #include "schemes/families/trace_stencil.hpp"
 #include "schemes/problem.hpp"
 #include "schemes/system/legendre.hpp"
-#include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
 
 namespace delf {
@@ -66,11 +65,6 @@ void take_to_mesh(SchemeParts& parts, const FieldTheory& theory, const Problem& 
   const auto families = mesh_families(time, theory.shared_density(), *p.lattice.mesh(), values_are_sources);
   parts.families.erase(parts.families.begin());
   parts.families.insert(parts.families.begin(), families.begin(), families.end());
-}
-
-EnergyMomentum row_energy(const RowsInTime& rows) {
-  return LegendreTransform(rows.system, rows.rows, rows.newest)
-      .energy(half_equations(rows.system, rows.rows, rows.newest, Side::below));
 }
 
 std::vector<double> row_rates(const RowsInTime& rows, std::span<const double> momenta) {

@@ -26,9 +26,6 @@ SchemeParts element_parts(const FieldTheory&, const StencilTable& element, const
 void take_to_mesh(SchemeParts&, const FieldTheory&, const Problem&, const StencilTable& time,
                   bool values_are_sources = false);
 
-/// The energy at the newest row, H of its fields and of the momenta of the step below, and the momentum −Σ φ_x ∂ℓ/∂φ_t, both
-/// by the quadrature of the lower side of the elements (LegendreTransform).
-EnergyMomentum row_energy(const RowsInTime&);
 /// The rates that have these momenta at the newest row, [i·C + c]; not numbers where there are none.
 std::vector<double> row_rates(const RowsInTime&, std::span<const double> momenta);
 

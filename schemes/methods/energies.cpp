@@ -11,40 +11,17 @@
 #include "schemes/methods/element_parts.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "schemes/system/assembly.hpp"
 #include "schemes/system/legendre.hpp"
+#include "schemes/system/momenta.hpp"
 
 namespace delf {
 namespace {
 
-/// Momenta ∂L/∂y of the fields at a row, of the stencils below it. What these read is listed once: half_equations(), which
-/// goes from stencil to stencil, takes ten times as long.
-class MomentaBelow {
- public:
-  MomentaBelow(const LatticeSystem& system, double monodromy)
-      : system_(system), assembly_(system, parts(system, monodromy)) {}
-
-  std::vector<double> operator()(const RowsInTime& rows) const {
-    std::vector<double> E, p(at(system_.lattice().sites() * system_.components()), 0.0);
-    assembly_.residual(SectionRing(rows.rows, rows.newest - 1, rows.newest), rows.newest, E);
-    for (int n = 0; n < assembly_.size(); ++n) p[assembly_.place(assembly_.equation(n))] = E[n];
-    return p;
-  }
-
- private:
-  static Assembly::Parts parts(const LatticeSystem& system, double monodromy) {
-    std::vector<Assembly::Anchor> below;
-    for (std::size_t f = 0; f < system.families().size(); ++f)
-      for (int i = 0; i < system.anchors(*system.families()[f]); ++i)
-        if (system.has_stencil(*system.families()[f], -1, i)) below.push_back({static_cast<int>(f), {-1, i}});
-    Assembly::Parts parts{.equations = {}, .past = 1, .monodromy = monodromy, .stencils = std::move(below)};
-    for (int i = 0; i < system.lattice().sites(); ++i)
-      for (int c = 0; c < system.fields(); ++c) parts.equations.push_back({{0, i}, c});
-    return parts;
-  }
-  const LatticeSystem& system_;
-  Assembly assembly_;
-};
+/// Momenta ∂L/∂y of a row, of the stencils below it. Of the system at hand: one that a check plants faults in has families
+/// that do not say what they are made of.
+std::shared_ptr<const HalfEquations> momenta_below(const LatticeSystem& system, const Problem& problem) {
+  return std::make_shared<const HalfEquations>(system, Side::below, monodromy_of(problem));
+}
 
 }  // namespace
 
@@ -60,17 +37,20 @@ const EnergyEntry midway_energy{
 const EnergyEntry hamiltonian_of_row{
     "H of a row", "H of the last row, with the momenta and the quadrature of scheme.method = {} itself",
     "discrete Legendre transform, Marsden-West 1.5", "",
-    [](const FieldTheory&, const LatticeSystem&, const Problem&) -> EnergyOfRows { return row_energy; }};
+    [](const FieldTheory&, const LatticeSystem& system, const Problem& problem) -> EnergyOfRows {
+      return [momenta = momenta_below(system, problem)](const RowsInTime& rows) {
+        return LegendreTransform(rows.system, rows.rows, rows.newest)
+            .energy((*momenta)(with_low_parts(rows.rows), rows.newest));
+      };
+    }};
 const EnergyEntry composition_energy{
     "H(q, p) of the composition",
     "H(q, p) = p'p/2km - k sum l(q, 0, D), on the pairs of the scheme's own order, p of its own Legendre transform: "
     "kept to the order of the steps",
     "discrete Legendre transform, Marsden-West 1.5", "composition",
     [](const FieldTheory&, const LatticeSystem& system, const Problem& problem) -> EnergyOfRows {
-      // of this system: one that a check plants faults in has families that do not say what they are made of
-      return [&system,
-              momenta = std::make_shared<const MomentaBelow>(system, monodromy_of(problem))](const RowsInTime& rows) {
-        return LegendreTransform(system, rows.rows, rows.newest).energy((*momenta)(rows));
+      return [&system, momenta = momenta_below(system, problem)](const RowsInTime& rows) {
+        return LegendreTransform(system, rows.rows, rows.newest).energy((*momenta)(rows.rows, rows.newest));
       };
     }};
 

@@ -2,11 +2,9 @@
 #include "schemes/system/momenta.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "lattice/error.hpp"
-#include "schemes/system/assembly.hpp"
 
 namespace delf {
 
@@ -22,8 +20,9 @@ std::vector<double> momenta(const LatticeSystem& system, const Window& window, s
   return half_equations(system, window, row, side);
 }
 
-std::vector<double> half_equations(const LatticeSystem& system, const Window& window, std::int64_t row, Side side,
-                                   std::vector<double>* absolute) {
+namespace {
+
+Assembly::Parts half_of_row(const LatticeSystem& system, Side side, double monodromy, int parity) {
   std::vector<Assembly::Anchor> stencils;
   for (std::size_t f = 0; f < system.families().size(); ++f) {
     const StencilFamily& family = *system.families()[f];
@@ -40,29 +39,44 @@ std::vector<double> half_equations(const LatticeSystem& system, const Window& wi
     }
     const int anchor = side == Side::below ? -top : -low.time;
     for (int i = 0; i < system.anchors(family); ++i)
-      if (system.has_stencil(family, row + anchor, i)) stencils.push_back({static_cast<int>(f), {anchor, i}});
+      if (system.has_stencil(family, parity + anchor, i)) stencils.push_back({static_cast<int>(f), {anchor, i}});
   }
-  // Differences in time are those of values with low parts: no digits are lost in them.
-  Window rows = window;
-  if (!rows.has_low())
-    for (const auto& values : rows.rows) rows.low.emplace_back(values.size(), 0.0);
   const int reach = system.height() + 1;
-  const Assembly assembly(system, {.equations = {},
-                                   .parity = static_cast<int>(row & 1),
-                                   .past = reach,
-                                   .future = reach,
-                                   .monodromy = window.monodromy,
-                                   .stencils = std::move(stencils)});
-  std::vector<double> p(system.lattice().sites() * system.components(), 0.0);
-  if (absolute) absolute->assign(p.size(), 0.0);
-  assembly.each_residual(SectionRing(rows, row - reach, row + reach), row, [&](const Assembly::Local& here) {
-    for (int m = 0; m < here.family.size(); ++m) {
-      if (here.rows[m] != 0 || !here.family.is_varied(m)) continue;
-      p[here.places[m]] += side == Side::below ? here.derivatives[m] : -here.derivatives[m];
-      if (absolute) (*absolute)[here.places[m]] += std::abs(here.derivatives[m]);
-    }
-  });
-  return p;
+  Assembly::Parts parts{.equations = {},
+                        .parity = parity,
+                        .past = side == Side::below ? reach : 0,
+                        .future = side == Side::below ? 0 : reach,
+                        .monodromy = monodromy,
+                        .stencils = std::move(stencils)};
+  for (int i = 0; i < system.lattice().sites(); ++i)
+    for (int c = 0; c < system.components(); ++c) parts.equations.push_back({{0, i}, c});
+  return parts;
+}
+
+}  // namespace
+
+HalfEquations::HalfEquations(const LatticeSystem& system, Side side, double monodromy, int parity)
+    : side_(side), reach_(system.height() + 1), assembly_(system, half_of_row(system, side, monodromy, parity)) {}
+
+std::vector<double> HalfEquations::operator()(const Window& window, std::int64_t row,
+                                              std::vector<double>* absolute) const {
+  std::vector<double> E;
+  const bool below = side_ == Side::below;
+  assembly_.residual(SectionRing(window, below ? row - reach_ : row, below ? row : row + reach_), row, E, absolute);
+  for (double& e : E) e = below ? e : -e;
+  return E;
+}
+
+Window with_low_parts(Window window) {
+  if (!window.has_low())
+    for (const auto& values : window.rows) window.low.emplace_back(values.size(), 0.0);
+  return window;
+}
+
+std::vector<double> half_equations(const LatticeSystem& system, const Window& window, std::int64_t row, Side side,
+                                   std::vector<double>* absolute) {
+  const HalfEquations half(system, side, window.monodromy, static_cast<int>(row & 1));
+  return half(with_low_parts(window), row, absolute);
 }
 
 }  // namespace delf

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "schemes/system/assembly.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
@@ -22,6 +23,20 @@ std::vector<double> momenta(const LatticeSystem&, const Window&, std::int64_t ro
 /// The half sums of the equations of any scheme, with a Lagrangian or without one.
 std::vector<double> half_equations(const LatticeSystem&, const Window&, std::int64_t row, Side,
                                    std::vector<double>* absolute = nullptr);
+/// The same row after row: what the stencils of a side read is listed once. Brick walls have rows of two parities.
+class HalfEquations {
+ public:
+  HalfEquations(const LatticeSystem&, Side, double monodromy, int parity = 0);
+  std::vector<double> operator()(const Window&, std::int64_t row, std::vector<double>* absolute = nullptr) const;
+
+ private:
+  Side side_;
+  int reach_;  ///< rows
+  Assembly assembly_;
+};
+/// The rows with low parts, which are zero if they had none: derivatives in time are then differences of values, and lose
+/// no digits in a short step.
+Window with_low_parts(Window);
 /// Throws that BadInput.
 void require_lagrangian(const LatticeSystem&);
 
