@@ -55,7 +55,8 @@ def _configured(build, flags):
     generator = ["-G", "Ninja"] if shutil.which("ninja") and not (build / "CMakeCache.txt").exists() else []
     options = {"CMAKE_BUILD_TYPE": "Release", "DELF_NATIVE": "ON" if flags is None else "OFF",
                "CMAKE_CXX_FLAGS": f"{os.environ.get('CXXFLAGS', '')} {flags or ''}".strip(),
-               "DELF_BUILD_TESTS": "OFF", "DELF_PYTHON": "ON", "Python_EXECUTABLE": sys.executable}
+               "DELF_BUILD_TESTS": "OFF", "DELF_PYTHON": "ON",
+               "DELF_UNITY": "ON", "Python_EXECUTABLE": sys.executable}
     subprocess.run(["cmake", "-S", str(ROOT), "-B", str(build), *generator,
                     *(f"-D{name}={value}" for name, value in options.items())], check=True)
     return build
