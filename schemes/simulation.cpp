@@ -10,17 +10,20 @@
 
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/row_monitors.hpp"
 #include "schemes/starting_rows.hpp"
 #include "schemes/stepping/evolution.hpp"
+#include "schemes/stepping/gauge.hpp"
 #include "schemes/stepping/plan_report.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/system/slab_extent.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_on_space.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "schemes/without_value.hpp"
 
@@ -28,8 +31,8 @@ namespace delf {
 namespace {
 
 SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
-  if (!(p.time_step > 0) || !std::isfinite(p.time_step))
-    throw BadInput("lattice.time_step", "lattice.time_step must be a positive, finite number");
+  if (p.time_step == 0 || !std::isfinite(p.time_step))
+    throw BadInput("lattice.time_step", "lattice.time_step must be a finite number, and not 0");
   if (p.lattice.mesh() && !find_method(p.method).on_meshes)
     throw BadInput("scheme.method", fmt::format("scheme.method = {}: needs a regular lattice; use composition, cgvi or "
                                                 "radau-iia on a mesh",
@@ -40,7 +43,9 @@ SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
                      fmt::format("{} = clamped: keeps phi_x too, which is for densities with second derivatives and "
                                  "scheme.method = multisymplectic; use fixed or natural",
                                  key));
+  require_theory_on(theory, p.lattice.space());
   SchemeParts parts = find_method(p.method).build(theory, p);
+  add_driven_ends(parts, theory, p);
   // on a point one value starts, and there is nothing beside it that it would have to be lifted to
   const auto is_of_one_field = [&](const Component& c) {
     return c.role == Role::field || (c.role == Role::inner && p.lattice.space() == Space::point);
@@ -303,7 +308,11 @@ Simulation::Monitors Simulation::monitors() const { return impl_->monitors.now()
 int Simulation::iterations() const { return impl_->stepper.iterations(); }
 double Simulation::residual() const { return impl_->stepper.residual(); }
 const char* Simulation::solve_kind() const { return to_string(impl_->evolution.plan().kind); }
-std::string Simulation::solve_summary() const { return solve_in_words(impl_->evolution.plan(), impl_->stepper); }
+std::string Simulation::solve_summary() const {
+  std::string words = solve_in_words(impl_->evolution.plan(), impl_->stepper);
+  if (has_undetermined_means(impl_->system, impl_->evolution.plan())) words += fmt::format("; {}", gauge_in_words);
+  return words;
+}
 std::string Simulation::plan_report() const {
   std::string report = delf::plan_report(impl_->evolution.system(), impl_->evolution.plan(), impl_->stepper,
                                          impl_->monitors.bytes_of_run());

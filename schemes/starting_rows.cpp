@@ -11,6 +11,7 @@
 #include "lattice/error.hpp"
 #include "schemes/families/mirror_check.hpp"
 #include "schemes/monodromy.hpp"
+#include "schemes/system/end_work.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
 
@@ -48,6 +49,11 @@ void StartingRows::hold_walls(std::vector<double>& row, bool velocity) const {
     for (int i = 0; i < system_.lattice().sites(); ++i)
       if (system_.is_held(i, c)) row[i * C + c] = velocity ? 0 : row[i * C + system_.field_component(component.field)];
   }
+  for (const auto& [column, end] : driven_ends(system_))
+    for (int c = 0; c < C && velocity; ++c)
+      if (const Component& component = system_.component(c);
+          component.role != Role::multiplier && system_.is_held(column, c))
+        row[column * C + c] = end->rate(component.field, component.at.time * system_.time_step());
 }
 
 void StartingRows::check_mirrors(const std::vector<double>& row) const {

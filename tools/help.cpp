@@ -162,14 +162,15 @@ let        let w = ...; defines a name for the rest of the text; in C++ the end 
   power   = primary [ "^" { "+" | "-" } power ]
   primary = number | name | function "(" sum [ "," sum ] ")" | "(" sum ")"
 
-A constraint is kept at every site by a multiplier; symmetries, one change for each field, are tested before a run, and
-conserve what series.csv and `delf verify` then show (Noether). Several are separated by semicolons:
+Constraints are kept at every site, by a multiplier each; symmetries, one change for each field, are tested before a run,
+and conserve what series.csv and `delf verify` then show (Noether). Several of both are separated by semicolons:
 
   fields = u, v
   constraint = u^2 + v^2 - 1
   symmetry = -v, u
 
-Every field needs its rate: a density without phi_t determines no phi. abs, min and max are refused, for they are not
+On lattice.space = point a field may be called x. Every field needs its rate: a density without phi_t determines no phi;
+where phi_t occurs only linearly, as in 0.5*phi_x*phi_t, phi alone is the start. abs, min and max are refused, for they are not
 differentiable. Where a density has no value at a field (log of a negative number), a run ends with exit code 3, and
 says which part has none. Numbers of a scene may be formulas of numbers, pi and parameters: length = 2*pi, until = 10*sqrt(2).
 `delf plan` prints the field equations of a density, and those of the stencil; with --latex for a paper.
@@ -180,6 +181,12 @@ from and to compare with. In place of initial.state:
   [initial]                                                [exact]
   phi = 4*atan(exp(x - 20))                                phi = 4*atan(exp((x - 20 - 0.5*t)/sqrt(0.75)))
   phi_t = 0
+
+Momenta dL/dq_t may take the place of rates on a point: p = 0.1, 0. An end of an interval may be a formula of t: it then moves
+so, or that flows in (the slope of phi along the outer normal):
+
+  [boundary]                                               [boundary]
+  left = 1.8*sin(0.9*t)                                    left.flux = 0.5*sin(0.9*t)
 
 A stencil may be text too: its sites, (time, space), and at each quadrature point a weight, and the jet there as a weight of
 each site for h = k = 1. Points are lines of their own:

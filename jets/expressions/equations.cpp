@@ -9,6 +9,7 @@
 #include <optional>
 #include <tuple>
 
+#include "jets/expressions/constraints.hpp"
 #include "jets/expressions/euler_lagrange.hpp"
 #include "jets/expressions/evaluate.hpp"
 #include "lattice/index.hpp"
@@ -24,19 +25,24 @@ std::string name_of(const std::string& name, Notation notation) {
   return notation == Notation::latex ? latex_name(name) : name;
 }
 
-/// λ, unless something else is called that.
-std::string multiplier_name(const ExpressionNames& names) {
+/// λ, or of several λ₁, λ₂, …, unless something else is called that.
+std::string multiplier_name(const ExpressionNames& names, int m, int count) {
   const auto taken = [&](const std::string& name) {
     return std::ranges::count(names.fields, name) > 0 ||
            std::ranges::count(names.parameters, name, &std::pair<std::string, double>::first) > 0;
   };
-  return taken("lambda") ? "multiplier" : "lambda";
+  std::string name = taken("lambda") ? "multiplier" : "lambda";
+  if (count > 1) name += std::to_string(m + 1);
+  return name;
 }
 
-std::string jet_name(int variable, const JetVariables& jets, const ExpressionNames& names, Notation notation) {
+/// `constraints`: how many there are.
+std::string jet_name(int variable, const JetVariables& jets, const ExpressionNames& names, Notation notation,
+                     int constraints = 0) {
   if (variable == jets.x()) return "x";
   if (variable == jets.t()) return "t";
-  if (variable == jets.multiplier()) return name_of(multiplier_name(names), notation);
+  if (const int m = variable - jets.multiplier(0); m >= 0)
+    return name_of(multiplier_name(names, m, constraints), notation);
   if (!jets.is_derivative(variable)) return name_of(names.parameters[variable - jets.parameter(0)].first, notation);
   const auto [a, in_t, in_x] = jets.of(variable);
   const std::string by = std::string(delf::at(in_t), 't') + std::string(delf::at(in_x), 'x');
@@ -56,8 +62,8 @@ int rank_of(int variable, const JetVariables& jets) {
   return 10 * (in_t + in_x) + in_t;
 }
 
-Naming jet_naming(const JetVariables& jets, const ExpressionNames& names, Notation notation) {
-  return {[&jets, &names, notation](int v) { return jet_name(v, jets, names, notation); },
+Naming jet_naming(const JetVariables& jets, const ExpressionNames& names, Notation notation, int constraints = 0) {
+  return {[&jets, &names, notation, constraints](int v) { return jet_name(v, jets, names, notation, constraints); },
           [&jets](int v) { return rank_of(v, jets); }};
 }
 
@@ -66,8 +72,9 @@ bool none(int) { return false; }
 /// Values of fields at sites, h, k, parameters, x and t of the site: variables of the discrete equations.
 class SiteVariables {
  public:
-  enum : int { h, k, x, t, multiplier, parameters };
-  explicit SiteVariables(const ExpressionNames& names) : names_(names) {}
+  enum : int { h, k, x, t, parameters };
+  SiteVariables(const ExpressionNames& names, int constraints) : names_(names), constraints_(constraints) {}
+  int multiplier(int m) const { return parameters + static_cast<int>(names_.parameters.size()) + m; }
 
   int at(int field, int time, int space) {
     const auto [place, made] = known_.try_emplace({field, time, space}, first_site() + static_cast<int>(sites_.size()));
@@ -82,8 +89,8 @@ class SiteVariables {
   }
   std::string name(int v, Notation notation) const {
     constexpr const char* letters[] = {"h", "k", "x", "t"};
-    if (v == multiplier) {
-      const std::string lambda = name_of(multiplier_name(names_), notation);
+    if (v >= multiplier(0) && !is_site(v)) {
+      const std::string lambda = name_of(multiplier_name(names_, v - multiplier(0), constraints_), notation);
       return lambda + (notation == Notation::latex ? "_{i}^{j}" : "(j,i)");
     }
     if (v < parameters)
@@ -106,9 +113,10 @@ class SiteVariables {
   }
 
  private:
-  int first_site() const { return parameters + static_cast<int>(names_.parameters.size()); }
+  int first_site() const { return multiplier(constraints_); }
 
   const ExpressionNames& names_;
+  int constraints_;
   std::map<std::tuple<int, int, int>, int> known_;
   std::vector<std::tuple<int, int, int>> sites_;
 };
@@ -116,9 +124,12 @@ class SiteVariables {
 class DiscreteEquations {
  public:
   DiscreteEquations(const SymbolicDensity& density, const StencilTable& table)
-      : table_(table), jets_(density.names()), sites_(density.names()) {
+      : table_(table),
+        jets_(density.names()),
+        sites_(density.names(), static_cast<int>(constraints_of(density.constraint()).size())) {
     l_ = parse(graph_, density.text(), jets_.names, "theory.density");
-    if (!density.constraint().empty()) G_ = parse(graph_, density.constraint(), jets_.names, "theory.constraint");
+    for (const std::string& constraint : constraints_of(density.constraint()))
+      G_.push_back(parse(graph_, constraint, jets_.names, "theory.constraint"));
   }
 
   std::string equation(int a, std::optional<int> parity, Notation notation) {
@@ -128,12 +139,12 @@ class DiscreteEquations {
       if (parity && (vertices[l].time + vertices[l].space - *parity) % 2 != 0) continue;
       for (const TablePoint& point : table_.points) add(a, static_cast<int>(l), point, terms);
     }
-    if (G_ >= 0) {  // hk λ G at the site
-      const int force = graph_.substitute(graph_.differentiate(G_, a), [&](int v) {
+    for (std::size_t m = 0; m < G_.size(); ++m) {  // hk λ G at the site
+      const int force = graph_.substitute(graph_.differentiate(G_[m], a), [&](int v) {
         return jets_.is_derivative(v) ? graph_.variable(sites_.at(v, 0, 0))
                                       : graph_.variable(SiteVariables::parameters + v - jets_.parameter(0));
       });
-      terms.push_back(graph_.negate(graph_.multiply(graph_.variable(SiteVariables::multiplier), force)));
+      terms.push_back(graph_.negate(graph_.multiply(graph_.variable(sites_.multiplier(static_cast<int>(m))), force)));
     }
     Sums sums(graph_, [](int v) { return v == SiteVariables::h || v == SiteVariables::k; });
     const Naming naming{[&](int v) { return sites_.name(v, notation); }, [&](int v) { return sites_.rank(v); }};
@@ -181,7 +192,8 @@ class DiscreteEquations {
   JetVariables jets_;
   SiteVariables sites_;
   Graph graph_;
-  int l_ = 0, G_ = -1;
+  int l_ = 0;
+  std::vector<int> G_;  ///< of each constraint
 };
 
 std::string number(double value) {
@@ -254,11 +266,11 @@ std::string density_formula(const SymbolicDensity& density, Notation notation) {
 
 namespace {
 
-std::string constraint_formula(const SymbolicDensity& density, Notation notation) {
+std::string constraint_formula(const SymbolicDensity& density, const std::string& constraint, Notation notation) {
   const JetVariables jets(density.names());
   Graph graph;
   Sums sums(graph, none);
-  const int G = parse(graph, density.constraint(), jets.names, "theory.constraint");
+  const int G = parse(graph, constraint, jets.names, "theory.constraint");
   return printed(sums, sums.of({G}), jet_naming(jets, density.names(), notation), notation) + " = 0";
 }
 
@@ -266,22 +278,24 @@ std::string constraint_formula(const SymbolicDensity& density, Notation notation
 
 std::vector<std::string> field_equations(const SymbolicDensity& density, Notation notation) {
   const JetVariables jets(density.names());
+  const int constraints = static_cast<int>(constraints_of(density.constraint()).size());
   std::vector<std::string> equations;
   for (int a = 0; a < jets.d; ++a) try {
       Graph graph;
       const int l = parse(graph, density.text(), jets.names, "theory.density");
       Sums sums(graph, none);
       std::vector<int> terms = euler_lagrange(graph, l, a, jets);
-      if (!density.constraint().empty()) {  // of ℓ + λ G
-        const int G = parse(graph, density.constraint(), jets.names, "theory.constraint");
-        terms.push_back(graph.negate(graph.multiply(graph.variable(jets.multiplier()), graph.differentiate(G, a))));
+      for (int m = 0; m < constraints; ++m) {  // of ℓ + Σ λ G
+        const int G = parse(graph, constraints_of(density.constraint())[at(m)], jets.names, "theory.constraint");
+        terms.push_back(graph.negate(graph.multiply(graph.variable(jets.multiplier(m)), graph.differentiate(G, a))));
       }
-      equations.push_back(printed(sums, sums.of(terms), jet_naming(jets, density.names(), notation), notation) +
-                          " = 0");
+      equations.push_back(
+          printed(sums, sums.of(terms), jet_naming(jets, density.names(), notation, constraints), notation) + " = 0");
     } catch (const TooLarge&) {
       equations.emplace_back(too_large);
     }
-  if (!density.constraint().empty()) equations.push_back(constraint_formula(density, notation));
+  for (const std::string& constraint : constraints_of(density.constraint()))
+    equations.push_back(constraint_formula(density, constraint, notation));
   return equations;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "jets/expressions/euler_lagrange.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "lattice/index.hpp"
@@ -15,7 +16,7 @@ JetVariables::JetVariables(const ExpressionNames& given)
         names.variables.emplace_back(
             given.fields[a] + (order ? "_" : "") + std::string(at(order - in_x), 't') + std::string(at(in_x), 'x'),
             derivative(a, order - in_x, in_x));
-  names.variables.emplace_back("x", x());
+  if (std::ranges::find(given.fields, "x") == given.fields.end()) names.variables.emplace_back("x", x());
   names.variables.emplace_back("t", t());
   for (std::size_t p = 0; p < given.parameters.size(); ++p)
     names.variables.emplace_back(given.parameters[p].first, parameter(static_cast<int>(p)));

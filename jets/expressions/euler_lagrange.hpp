@@ -21,7 +21,7 @@ struct JetVariables {
   int x() const { return slots * d; }
   int t() const { return slots * d + 1; }
   int parameter(int p) const { return slots * d + 2 + p; }
-  int multiplier() const { return parameter(parameters); }  ///< of a constraint; no text names it
+  int multiplier(int m) const { return parameter(parameters + m); }  ///< of constraint m; no text names it
   /// ∂ⁿ/∂tᵐ∂xⁿ⁻ᵐ of field a, by the number of derivatives in t and in x.
   int derivative(int a, int in_t, int in_x) const {
     const int order = in_t + in_x;

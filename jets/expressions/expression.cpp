@@ -32,9 +32,13 @@ struct Numbering {
   int count() const { return 6 * d + 2; }
 };
 
+/// A field that is called x has the name of the place, which a point has not.
+bool names_place(const std::vector<std::string>& fields) { return std::ranges::find(fields, "x") == fields.end(); }
+
 Names names_of(const ExpressionNames& given) {
   const Numbering number{static_cast<int>(given.fields.size())};
-  Names names{{{"t", number.t()}, {"x", number.x()}}, {}};
+  Names names{{{"t", number.t()}}, {}};
+  if (names_place(given.fields)) names.variables.emplace_back("x", number.x());
   for (int a = 0; a < number.d; ++a)
     for (int s = 0; s < 6; ++s) names.variables.emplace_back(given.fields[a] + slot_endings[s], s * number.d + a);
   names.constants = given.parameters;
@@ -215,7 +219,10 @@ void check_names(const ExpressionNames& given, const std::string& key_of_fields,
     throw BadInput(key_of_fields, key_of_fields + ": more than " + std::to_string(most_fields) + " fields; use fewer");
   ExpressionNames before{{}, {}};
   for (const std::string& field : given.fields) {
-    for (const char* ending : slot_endings) check_new_name(field + ending, names_of(before), key_of_fields);
+    Names known = names_of(before);
+    if (field == "x" && names_place(before.fields))
+      std::erase_if(known.variables, [](const auto& v) { return v.first == "x"; });
+    for (const char* ending : slot_endings) check_new_name(field + ending, known, key_of_fields);
     before.fields.push_back(field);
   }
   for (const auto& parameter : given.parameters) {

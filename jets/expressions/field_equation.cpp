@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "jets/expressions/constraints.hpp"
 #include "jets/expressions/euler_lagrange.hpp"
 #include "jets/expressions/evaluate.hpp"
 #include "jets/expressions/expression.hpp"
@@ -28,6 +29,21 @@ class FieldEquations::Form {
 
 namespace {
 
+/// x −= (x·n/|n|²) n
+void take_along(const std::vector<double>& n, std::vector<double>& x) {
+  double along = 0, square = 0;
+  for (std::size_t a = 0; a < n.size(); ++a) along += x[a] * n[a], square += n[a] * n[a];
+  for (std::size_t a = 0; a < n.size() && square > 0; ++a) x[a] -= along / square * n[a];
+}
+void take_along(const std::vector<double>& n, std::vector<FieldEquations::Value>& E) {
+  double along = 0, square = 0;
+  for (std::size_t a = 0; a < n.size(); ++a) along += E[a].sum * n[a], square += n[a] * n[a];
+  for (std::size_t a = 0; a < n.size() && square > 0; ++a) {
+    const double force = along / square * n[a];
+    E[a].sum -= force, E[a].absolute += std::abs(force);
+  }
+}
+
 /// The equations of a density as text, by the rules of differentiation.
 class OfText final : public FieldEquations::Form {
  public:
@@ -38,10 +54,12 @@ class OfText final : public FieldEquations::Form {
     terms_.resize(jets_.d);
     for (int a = 0; a < jets_.d; ++a)
       for (const int term : euler_lagrange(graph, l, a, jets_)) terms_[a].emplace_back(graph, term);
-    if (density.constraint().empty()) return;
-    const int G = parse(graph, density.constraint(), jets_.names, "theory.constraint");
-    G_.emplace_back(graph, G);
-    for (int a = 0; a < jets_.d; ++a) G_.emplace_back(graph, graph.differentiate(G, jets_.derivative(a, 0, 0)));
+    for (const std::string& constraint : constraints_of(density.constraint())) {
+      const int G = parse(graph, constraint, jets_.names, "theory.constraint");
+      std::vector<Evaluation>& of_G = constraints_.emplace_back();
+      of_G.emplace_back(graph, G);
+      for (int a = 0; a < jets_.d; ++a) of_G.emplace_back(graph, graph.differentiate(G, jets_.derivative(a, 0, 0)));
+    }
   }
 
   std::vector<FieldEquations::Value> values(std::span<const double> jet, double t, double x) const override {
@@ -56,21 +74,20 @@ class OfText final : public FieldEquations::Form {
         const double value = term.operator()<double>(variable);
         E[a].sum += value, E[a].absolute += std::abs(value);
       }
-    if (G_.empty()) return E;
-    // λ = E·∂G/|∂G|²
-    std::vector<double> slopes;
-    FieldEquations::Value G{G_[0].operator()<double>(variable), 0};
-    double along = 0, square = 0;
-    for (int a = 0; a < jets_.d; ++a) {
-      const double slope = slopes.emplace_back(G_[a + 1].operator()<double>(variable));
-      along += E[a].sum * slope, square += slope * slope;
-      G.absolute += std::abs(slope * jet[jets_.derivative(a, 0, 0)]);
+    // E − Σ λ_m ∂G_m: what is left of E across all slopes, made orthogonal one after another
+    std::vector<std::vector<double>> slopes;
+    std::vector<FieldEquations::Value> G;
+    for (const std::vector<Evaluation>& of_G : constraints_) {
+      std::vector<double>& slope = slopes.emplace_back();
+      FieldEquations::Value& value = G.emplace_back(of_G[0].operator()<double>(variable), 0);
+      for (int a = 0; a < jets_.d; ++a) {
+        slope.push_back(of_G[a + 1].operator()<double>(variable));
+        value.absolute += std::abs(slope.back() * jet[jets_.derivative(a, 0, 0)]);
+      }
+      for (std::size_t m = 0; m + 1 < slopes.size(); ++m) take_along(slopes[m], slope);
+      take_along(slope, E);
     }
-    for (std::size_t a = 0; a < E.size() && square > 0; ++a) {
-      const double force = along / square * slopes[a];
-      E[a].sum -= force, E[a].absolute += std::abs(force);
-    }
-    E.push_back(G);
+    E.insert(E.end(), G.begin(), G.end());
     return E;
   }
 
@@ -78,7 +95,7 @@ class OfText final : public FieldEquations::Form {
   JetVariables jets_;
   std::vector<std::pair<std::string, double>> parameters_;
   std::vector<std::vector<Evaluation>> terms_;
-  std::vector<Evaluation> G_;  ///< G, ∂G/∂φ_a; empty: no constraint
+  std::vector<std::vector<Evaluation>> constraints_;  ///< of each G, ∂G/∂φ_a
 };
 
 /// The equations of a compiled density of first order, by its Hessian.

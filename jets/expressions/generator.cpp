@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "jets/expressions/constraints.hpp"
 #include "jets/expressions/euler_lagrange.hpp"
 #include "jets/expressions/evaluate.hpp"
 #include "jets/expressions/parse.hpp"
@@ -112,8 +113,8 @@ bool require_symmetry(const LinearSymmetry& symmetry, std::string_view density, 
                  std::to_string(static_cast<int>(std::ceil(100 * *changed))) +
                  " % of its terms, and not by a divergence; correct it, or leave it out");
     }
-    if (!constraint.empty()) {
-      const int G = parse(graph, constraint, variables.names, key);
+    for (const std::string& one : constraints_of(constraint)) {
+      const int G = parse(graph, one, variables.names, key);
       if (largest_sum(graph, change(graph, G, symmetry, variables), variables, names).value_or(1) > zero_at_random_jets)
         refuse("it leads off the constraint; correct it, or leave it out");
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "jets/expressions/stencil_expression.hpp"
 
+#include "jets/expressions/constraints.hpp"
 #include "jets/expressions/parse.hpp"
 #include "lattice/error.hpp"
 
@@ -20,16 +21,21 @@ StencilExpression StencilExpression::constraint(std::string_view text, const Exp
   Names names{{}, given.parameters};
   std::vector<VertexValue> values;
   for (int a = 0; a < d; ++a) names.variables.emplace_back(given.fields[a], a);
-  for (int a = 0; a <= d; ++a) values.push_back({0, a});
+  for (int a = 0; a < d; ++a) values.push_back({0, a});
   Graph graph;
-  const int G = parse(graph, text, names, key);
-  const Evaluation of_G(graph, G);
-  bool any = false;
-  for (int a = 0; a < d; ++a) any = any || of_G.reads(a);
-  if (!any)
-    throw BadInput(
-        key, key + ": is a number and no condition on the fields; write one like u^2 + v^2 - 1, which is kept at 0");
-  return {StencilPattern({{0, 0}}), std::move(values), graph, graph.multiply(graph.variable(d), G)};
+  int sum = graph.constant(0);
+  for (const std::string& constraint : constraints_of(text)) {
+    const int G = parse(graph, constraint, names, key), multiplier = static_cast<int>(values.size());
+    const Evaluation of_G(graph, G);
+    bool any = false;
+    for (int a = 0; a < d; ++a) any = any || of_G.reads(a);
+    if (!any)
+      throw BadInput(
+          key, key + ": is a number and no condition on the fields; write one like u^2 + v^2 - 1, which is kept at 0");
+    values.push_back({0, multiplier});
+    sum = graph.add(sum, graph.multiply(graph.variable(multiplier), G));
+  }
+  return {StencilPattern({{0, 0}}), std::move(values), graph, sum};
 }
 
 StencilExpression StencilExpression::lagrangian(std::string_view text, StencilPattern pattern,

@@ -15,7 +15,8 @@ namespace delf {
 /// A discrete Lagrangian on the values of a stencil, given as text: a StencilLagrangian for a LagrangianFamily.
 class StencilExpression {
  public:
-  /// λ G(u) at every site, for a constraint G(u) = 0 on d fields; λ is component d. Throws BadInput for `key`.
+  /// Σ λ_m G_m(u) at every site, for constraints G_m(u) = 0 on d fields, as constraints_of() has them; λ_m is component
+  /// d + m. Throws BadInput for `key`.
   static StencilExpression constraint(std::string_view text, const ExpressionNames&, const std::string& key);
   /// L(y1, …, yn; h, k) of the values of one field at n sites. Throws BadInput for `key`.
   static StencilExpression lagrangian(std::string_view text, StencilPattern,

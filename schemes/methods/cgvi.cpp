@@ -21,6 +21,7 @@
 #include "schemes/system/legendre.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_on_space.hpp"
 
 namespace delf {
 namespace {
@@ -46,16 +47,18 @@ void add_constraints(SchemeParts& parts, const FieldTheory& theory, const TimeEl
   if (nodes.front() != 0 || nodes.back() != last) refuse();
   nodes.pop_back();  // the next row's own
   for (const int node : nodes) {
-    const int multiplier = static_cast<int>(parts.components.size());
+    const int first = static_cast<int>(parts.components.size());
     const auto constraint = theory.constraint();
     MappedFamily::Map map;
     for (int i = 0; i < constraint->size(); ++i) {
       const int c = constraint->values()[i].component;
-      map.reads.push_back({{constraint->site(i), c < d ? node * d + c : multiplier, 1}});
+      map.reads.push_back({{constraint->site(i), c < d ? node * d + c : first + c - d, 1}});
     }
     parts.families.push_back(std::make_shared<MappedFamily>(constraint, map));
     const NodePosition at = element.nodes[node];
-    parts.components.push_back({node == 0 ? "lambda" : fmt::format("lambda at {:.4g}", at.time), Role::multiplier, at});
+    for (const Component& multiplier : multipliers_of(theory))
+      parts.components.push_back(
+          {node == 0 ? multiplier.name : fmt::format("{} at {:.4g}", multiplier.name, at.time), Role::multiplier, at});
   }
 }
 

@@ -13,6 +13,7 @@
 #include "schemes/system/constant_mass.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_on_space.hpp"
 
 namespace delf {
 namespace {
@@ -42,7 +43,7 @@ SchemeParts rows_on_mesh(const FieldTheory& theory, const Problem& p) {
                     theory.symmetries()};
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));
-    parts.components.push_back({"lambda", Role::multiplier, {}});
+    for (Component& multiplier : multipliers_of(theory)) parts.components.push_back(std::move(multiplier));
   }
   return parts;
 }

@@ -24,6 +24,7 @@
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_on_space.hpp"
 #include "schemes/unknown_name.hpp"
 
 namespace delf {
@@ -142,7 +143,7 @@ bool is_chain(const StencilFamily& family) {
 /// An action on values has the equations of the density as h and k tend to 0 together: tried on fields at random.
 void require_action_of(const FieldTheory& theory, const StencilFamily& family, const Problem& p) {
   const auto equations = FieldEquations::of(theory.density());
-  if (!equations || theory.constraint() || !(p.time_step > 0)) return;
+  if (!equations || theory.constraint() || p.time_step == 0) return;
   const bool chain = is_chain(family), uniform = chain || p.lattice.space() == Space::point;
   const double k = chain ? 1 : p.lattice.space_step(), courant = p.time_step / p.lattice.space_step();
   std::mt19937_64 random(1);
@@ -248,7 +249,7 @@ SchemeParts multisymplectic_parts(const FieldTheory& theory, const Problem& p) {
       parts.families.push_back(std::move(term));
   if (auto constraint = theory.constraint()) {
     parts.families.push_back(std::move(constraint));
-    parts.components.push_back({"lambda", Role::multiplier, {}});
+    for (Component& multiplier : multipliers_of(theory)) parts.components.push_back(std::move(multiplier));
   }
   return parts;
 }
@@ -309,6 +310,7 @@ const MethodEntry multisymplectic_method{
     .reads_stencil = true,
     .on_meshes = true,
     .label = [](const Problem& p) { return p.lattice.mesh() ? "Stormer-Verlet" : p.stencil; },
+    .starts = {StartRule::exact, StartRule::centred, StartRule::values},
     .row_density = density_of_mesh_rows,
     .variants = multisymplectic_variants,
     .order = multisymplectic_order};

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -10,6 +13,7 @@
 #include "lattice/error.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/smooth_state.hpp"
+#include "schemes/states/momenta.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/state_registry.hpp"
 
@@ -19,6 +23,7 @@ namespace {
 
 std::string value_key(const std::string& field) { return "initial." + field; }
 std::string velocity_key(const std::string& field) { return "initial." + field + "_t"; }
+constexpr auto momenta_key = "initial.p";
 std::string exact_key(const std::string& field) { return "exact." + field; }
 
 /// One field: φ(0, x) and φ_t(0, x); or φ(t, x), which is then a solution to compare with.
@@ -128,6 +133,9 @@ class FormulaState final : public State, public SmoothState {
   mutable int order_ = -1;                ///< that they are of
 };
 
+/// initial.p is the start of a field that is called p.
+bool names_a_field(const std::vector<std::string>& fields) { return std::ranges::find(fields, "p") != fields.end(); }
+
 std::unique_ptr<State> formula(const StateBuild& build) {
   // theory.NAME as NAME, and the length of space
   std::vector<std::pair<std::string, double>> numbers;
@@ -165,6 +173,20 @@ std::unique_ptr<State> formula(const StateBuild& build) {
       }
     }
   }
+  if (build.values.has(momenta_key) && !names_a_field(build.request.fields)) {
+    if (all_exact.value_or(false) || build.lattice.space() != Space::point)
+      throw BadInput(
+          momenta_key,
+          std::string(momenta_key) + ": is for lattice.space = point and fields that are given at t = 0; leave it out");
+    std::vector<double> q;
+    for (const FieldFormula& f : fields) q.push_back(f.value(0, 0));
+    const std::vector<double> v = velocities_of_momenta(build, q, velocity_key(build.request.fields.front()));
+    for (std::size_t a = 0; a < fields.size(); ++a) {
+      const std::string number = fmt::format("{:.17g}", v[a]);
+      fields[a].velocity.emplace(number, numbers, momenta_key);
+      fields[a].text += ", " + build.request.fields[a] + "_t(0, x) = " + text(v[a]) + " by its momentum";
+    }
+  }
   return std::make_unique<FormulaState>(std::move(fields), std::move(numbers), all_exact.value_or(false), build.lattice,
                                         build.request);
 }
@@ -176,6 +198,8 @@ std::vector<Parameter> further(const std::vector<std::string>& fields) {
   };
   for (const std::string& name : fields) add(value_key(name), name + "(0, x), a formula of x");
   for (const std::string& name : fields) add(velocity_key(name), "its rate there; 0 if not given");
+  if (!names_a_field(fields))
+    add(momenta_key, "p = dL/dq_t of every field on a point, separated by commas, in place of their rates");
   for (const std::string& name : fields)
     add(exact_key(name), name + "(t, x), a solution to start from and to compare with");
   return all;

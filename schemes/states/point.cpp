@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <charconv>
-#include <cmath>
 #include <utility>
 
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
-#include "lattice/text_parts.hpp"
+#include "schemes/states/momenta.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/state_registry.hpp"
 
@@ -35,36 +33,13 @@ class Point final : public State {
   std::vector<double> q_, v_;
 };
 
-/// "0.25, 0.125": as many numbers as the theory has fields; zeros if the key is not given.
-std::vector<double> numbers(const StateBuild& build, const std::string& key, int count) {
-  const auto given = build.values.maybe<std::string>(key);
-  std::vector<double> list;
-  if (!given) return std::vector<double>(count, 0.0);
-  const auto refuse = [&](const std::string& why) { throw BadInput(key, key + " = " + *given + ": " + why); };
-  for (const std::string& word : parts_of(*given)) {
-    double x = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(x))
-      refuse("is not a list of finite numbers; write one like 0.25, -1e-3");
-    list.push_back(x);
-  }
-  if (static_cast<int>(list.size()) != count)
-    refuse("the theory " + build.request.theory + " has " + std::to_string(count) +
-           (count == 1 ? " field" : " fields") + "; give as many numbers");
-  return list;
-}
-
 std::unique_ptr<State> point(const StateBuild& build) {
   const int d = build.request.components;
   std::vector<double> q = numbers(build, "initial.q", d), v = numbers(build, "initial.v", d);
   if (build.values.has("initial.p")) {
     if (build.values.has("initial.v"))
       throw BadInput("initial.p", "initial.p: the momenta follow from initial.v; give one of the two");
-    const std::vector<double> p = numbers(build, "initial.p", d);
-    const auto velocity = build.request.velocity_of ? build.request.velocity_of(q, p) : std::nullopt;
-    if (!velocity)
-      throw BadInput("initial.p", "initial.p: no velocities have these momenta at initial.q; give initial.v");
-    v = *velocity;
+    v = velocities_of_momenta(build, q, "initial.v");
   }
   return std::make_unique<Point>(std::move(q), std::move(v));
 }
@@ -88,7 +63,6 @@ const StateEntry point_state{
     {},
     Place::point,
     initial::point,
-    true,
-    {"wave-map", "spherical-pendulum"}};  // their constraint would be broken
+    true};
 
 }  // namespace delf

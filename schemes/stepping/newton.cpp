@@ -12,6 +12,7 @@
 #include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 #include "schemes/stepping/slab_solver.hpp"
+#include "schemes/system/end_work.hpp"
 
 namespace delf {
 namespace {
@@ -392,8 +393,13 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
     Eigen::Map<Vector>(ring.row(-1), y1.size()) = y1 - 2 * s * h * phi_t;
     std::copy(y0.begin(), y0.end(), ring.row(0));
     std::copy(y1.begin(), y1.end(), ring.row(1));
+    for (const int row : {-1, 1}) set_driven_ends(system, row, {ring.row(row), delf::at(y1.size())});
   });
-  const auto predict = [&](double s) { return problem.moved(y0, s * h * phi_t); };
+  const auto predict = [&](double s) {
+    Vector y1 = problem.moved(y0, s * h * phi_t);
+    set_driven_ends(system, 1, {y1.data(), delf::at(y1.size())});
+    return y1;
+  };
   const double absolute = tolerance * std::max(largest(y0), largest(predict(1)));
   int iterations = 0;
   if (!followed) {

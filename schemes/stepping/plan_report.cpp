@@ -10,6 +10,7 @@
 
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/bytes_in_words.hpp"
+#include "schemes/stepping/gauge.hpp"
 
 namespace delf {
 namespace {
@@ -45,14 +46,18 @@ void append_table(std::string& out, const LatticeSystem& system, Site site, cons
 
 const char* in_words(Placement placement) {
   switch (placement) {
-    case Placement::every_site: break;
-    case Placement::brick_wall: return " in a brick wall";
+    case Placement::every_site:
+      break;
+    case Placement::brick_wall:
+      return " in a brick wall";
     case Placement::left_wall:
       return " at the left wall";
     case Placement::right_wall:
       return " at the right wall";
-    case Placement::left_mirror: return " at the left wall, pairs with mirror images";
-    case Placement::right_mirror: return " at the right wall, pairs with mirror images";
+    case Placement::left_mirror:
+      return " at the left wall, pairs with mirror images";
+    case Placement::right_mirror:
+      return " at the right wall, pairs with mirror images";
   }
   return "";
 }
@@ -120,6 +125,8 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   std::istringstream lines(plan.report());
   const char* head = "solve        ";
   for (std::string line; std::getline(lines, line); head = "             ") out += head + line + '\n';
+  if (has_undetermined_means(system, plan))
+    out += fmt::format("gauge        {}; site 0 has no equation, which the others imply\n", gauge_in_words);
   if (!stepper.iterates() && !stepper.layout()) out += "step         " + solver + '\n';
   else if (!stepper.layout())
     out +=

@@ -17,8 +17,10 @@
 #include "schemes/stability/constraint_ghost.hpp"
 #include "schemes/stepping/first_slab.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/stepping/gauge.hpp"
 #include "schemes/stepping/newton.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/end_work.hpp"
 #include "schemes/system/slab_extent.hpp"
 
 namespace delf {
@@ -31,8 +33,12 @@ constexpr int most_points = 8, least_points = 4;
 }  // namespace
 
 SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
-    : system_(system), plan_(plan), options_(options), components_(system.components()), root_(system) {
-  SlabExtent extent = slab_extent(system, plan);
+    : system_(system),
+      plan_(with_gauge(system, plan)),
+      options_(options),
+      components_(system.components()),
+      root_(system) {
+  SlabExtent extent = slab_extent(system, plan_);
   future_ = extent.above;
   delay_ = extent.field_lag;
   back_ = std::move(extent.behind);
@@ -45,7 +51,7 @@ SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, con
   const std::size_t row = delf::at(system.lattice().sites()) * delf::at(components_);
   ring_ = std::make_unique<SectionRing>(past_ + future_ + 1, row, true);
   for (int p = 0; p < plan.table.parities; ++p) {
-    parities_.push_back(parity_of(Assembly(system, Assembly::slab(plan, p, past_, future_, options.monodromy))));
+    parities_.push_back(parity_of(Assembly(system, Assembly::slab(plan_, p, past_, future_, options.monodromy))));
     const bool follows = parities_.back().equations.keep_low(system);
     parities_.back().momentum_follows = follows && plan.table.parities == 1;
     parities_.back().has_constant = factor_constant(parities_.back());
@@ -181,6 +187,7 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
                                                  "which the positions grow",
                                                  *i, *i + 1, r));
     std::ranges::copy(rows[r], ring_->row(static_cast<std::int64_t>(r)));
+    set_driven_ends(system_, static_cast<std::int64_t>(r), {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
     std::fill_n(ring_->low(static_cast<std::int64_t>(r)), rows[r].size(), 0.0);
     largest_[1] = std::exchange(largest_[0], largest_of(rows[r].data()));
   }
@@ -203,10 +210,12 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
 void SlabStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
   for (const Component& c : system_.all_components())
     if (c.role != Role::field || starting_rows_ != 2) return StepMethod::start_centred(row0, velocity);
-  const Window first = system_.window(0, {row0}, options_.monodromy);
+  std::vector<double> driven = row0;
+  set_driven_ends(system_, 0, driven);
+  const Window first = system_.window(0, {driven}, options_.monodromy);
   const NewtonResult result =
       solve_centred_start(system_, plan_, first, velocity, false, options_.tolerance, options_.max_iterations);
-  start({row0, result.row});
+  start({driven, result.row});
 }
 
 void SlabStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
@@ -255,6 +264,8 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
   const std::size_t size = predicted_.size();
   std::copy_n(ring_->row(J + future_ - 1), size, ring_->row(J + future_));
   std::copy_n(ring_->low(J + future_ - 1), size, ring_->low(J + future_));
+  for (std::int64_t row = std::max<std::int64_t>(J - 1, 0); row <= J + future_; ++row)
+    set_driven_ends(system_, row, {ring_->row(row), size});
   for (const Unknowns& unknowns : p.unknowns) {
     for (const int place : unknowns.places) ring_->low(J + unknowns.time)[place] = 0;
     // Starting rows hold the fields; multipliers and inner nodes are known from the slabs that were solved.
@@ -491,6 +502,20 @@ Stop SlabStepper::finish(Parity& p, std::int64_t J, Stop stop) {
   return stop;
 }
 
+/// y_J += mean(y_{J−1}) − mean(y_J) of every field, where means are a gauge.
+void SlabStepper::keep_means(std::int64_t J) {
+  if (system_.lattice().space() == Space::mesh || plan_.table.held.empty()) return;
+  const std::size_t size = predicted_.size(), C = delf::at(components_);
+  const double* const before = ring_->row(J - 1);
+  double *const row = ring_->row(J), *const low = ring_->low(J);
+  for (std::size_t c = 0; c < C; ++c) {
+    double gap = 0;
+    for (std::size_t at = c; at < size; at += C) gap += before[at] - row[at];
+    gap /= static_cast<double>(size / C);
+    for (std::size_t at = c; at < size; at += C) add_exactly(row[at], low[at], gap);
+  }
+}
+
 void SlabStepper::carry(const Parity& p, std::int64_t J) {
   if (!p.momentum_follows) return;
   for (std::size_t n = 0; n + 1 < gain_.size(); ++n) add_exactly(carried_[n], carried_low_[n], gain_[n]);
@@ -586,6 +611,7 @@ void SlabStepper::solve(std::int64_t J, const std::vector<double>* momenta) {
     throw MeshCrossing(
         fmt::format("step {}, t = {:.6g}: {}; in the row before, {}; reduce lattice.time_step or mesh.alpha", J,
                     system_.times()->time(J), crossed, mesh_->narrowest_cell(ring_->row(J - 1 - delay_))));
+  keep_means(J);
   carry(p, J);
   if (momenta) p.factored = Matrix::none;
   if (options_.fibre == Fibre::circle) check_increments(J);

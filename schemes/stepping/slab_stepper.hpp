@@ -100,6 +100,7 @@ class SlabStepper final : public StepMethod {
   void find_known(const Parity&, std::int64_t J, const std::vector<double>* momenta);
   Stop finish(Parity&, std::int64_t J, Stop);
   void carry(const Parity&, std::int64_t J);
+  void keep_means(std::int64_t J);
   Stop watch(const Parity&, std::int64_t J, int points, const std::vector<double>* momenta, std::string& crossed);
   SlabPast past_of(std::int64_t J, const std::vector<double>* momenta) const;
   std::vector<double> values_of(const Parity&, std::int64_t J) const;  ///< of the unknowns
@@ -114,7 +115,7 @@ class SlabStepper final : public StepMethod {
       residual_bytes_to_come() const;
 
   const LatticeSystem& system_;
-  const SolvePlan& plan_;
+  const SolvePlan plan_;  ///< with_gauge()
   StepOptions options_;
   int components_, past_ = 0, future_ = 0, delay_ = 0, starting_rows_ = 0;
   std::optional<MeshWatch> mesh_;  ///< where it moves

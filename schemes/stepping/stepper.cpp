@@ -5,6 +5,7 @@
 
 #include "lattice/index.hpp"
 #include "schemes/stepping/composition_stepper.hpp"
+#include "schemes/stepping/gauge.hpp"
 #include "schemes/stepping/kick_stepper.hpp"
 #include "schemes/stepping/rows/row_stepper.hpp"
 #include "schemes/stepping/saved_state.hpp"
@@ -20,6 +21,12 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
     if (auto stepper = KickStepper::make(system, plan, options)) return stepper;
     return std::make_unique<SlabStepper>(system, plan, options);
   }
+  const bool has_own_walls = std::ranges::any_of(system.families(), [](const auto& family) {
+    const Placement at = family->pattern().placement;
+    return (at == Placement::left_wall || at == Placement::right_wall) && !family->made_of();
+  });
+  if (has_own_walls || has_undetermined_means(system, plan))
+    return std::make_unique<SlabStepper>(system, plan, options);
   const bool processed = !options.processor.empty();
   const bool mirrored = std::ranges::any_of(
       system.families(), [](const auto& family) { return family->pattern().placement == Placement::left_mirror; });

@@ -13,6 +13,7 @@
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
+#include "schemes/stepping/gauge.hpp"
 #include "schemes/system/assembly.hpp"
 #include "schemes/system/equation_terms.hpp"
 #include "schemes/system/slab_extent.hpp"
@@ -88,7 +89,7 @@ std::string in_words(const LatticeSystem& system, const Assembly& equations, con
 
 void require_determined(const Evolution& evolution) {
   const LatticeSystem& system = evolution.system();
-  const SolvePlan& plan = evolution.plan();
+  const SolvePlan plan = with_gauge(system, evolution.plan());
   if (!goes_by_rows(system, plan) || evolution.stepper().layout()) return;
   const SlabExtent extent = slab_extent(system, plan);
   const int past = std::max(plan.history, extent.below + 1);

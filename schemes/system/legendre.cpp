@@ -18,17 +18,17 @@ namespace {
 
 constexpr int most_iterations = 50;
 
-/// The value whose equation a family keeps among the fields of a row alone: a multiplier, or what is slaved.
-std::optional<int> equation_in_row(const StencilFamily& family, const LatticeSystem& system) {
-  std::optional<int> equation;
+/// The values whose equations a family keeps among the fields of a row alone: multipliers, or what is slaved.
+std::vector<int> equations_in_row(const StencilFamily& family, const LatticeSystem& system) {
+  std::vector<int> equations;
   for (int i = 0; i < family.size(); ++i) {
     const Component& c = system.component(family.values()[i].component);
-    if (family.site(i).time != 0 || c.at.time != 0 || c.momentum) return std::nullopt;
+    if (family.site(i).time != 0 || c.at.time != 0 || c.momentum) return {};
     const bool keeps = c.role == Role::multiplier || c.role == Role::slaved;
-    if (c.role != Role::field && !c.position && c.role != Role::multiplier) return std::nullopt;
-    if (keeps && family.is_varied(i)) equation = i;
+    if (c.role != Role::field && !c.position && c.role != Role::multiplier) return {};
+    if (keeps && family.is_varied(i)) equations.push_back(i);
   }
-  return equation;
+  return equations;
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ LegendreTransform::LegendreTransform(const LatticeSystem& system, const Window& 
     return;
   }
   for (const auto& family : system.families())
-    if (const auto equation = equation_in_row(*family, system)) bind(*family, *equation, system, window, row);
+    for (const int equation : equations_in_row(*family, system)) bind(*family, equation, system, window, row);
 }
 
 LegendreTransform::LegendreTransform(const BatchDensity& density, std::span<const double> q, double t)

@@ -175,7 +175,9 @@ const TheoryEntry text_theory{
           .otherwise = "none"},
          {.key = constraint_key,
           .fallback = std::string(),
-          .help = "an expression of the fields that is kept at 0 at every site, by a multiplier: u^2 + v^2 - 1",
+          .help =
+              "an expression of the fields that is kept at 0 at every site, by a multiplier: u^2 + v^2 - 1; several "
+              "are separated by semicolons",
           .otherwise = "none"},
          {.key = symmetry_key,
           .fallback = std::string(),
@@ -198,11 +200,14 @@ const TheoryEntry text_theory{
     .further = further};
 
 Problem mirrored_in_time(Problem problem, double T) {
+  const auto is_end = [](const std::string& key) {  // ends that move as formulas of t
+    return key.starts_with("boundary.left") || key.starts_with("boundary.right");
+  };
   static const std::regex time("\\bt\\b");
   ParameterValues values;
   for (const auto& [key, value] : problem.parameters) {
     if (key == equation_key) continue;  // the density was tested with it, and it is that of the other direction
-    values[key] = key == density_key || key == constraint_key
+    values[key] = key == density_key || key == constraint_key || is_end(key)
                       ? std::regex_replace(std::get<std::string>(value), time, fmt::format("({:.17g}-t)", T))
                       : value;
   }

@@ -18,6 +18,7 @@
 #include "schemes/complex/circle_fibre.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/states/state_registry.hpp"
+#include "schemes/theories/theory_on_space.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/mesh_text.hpp"
 #include "tools/rows/exact_solution.hpp"
@@ -274,11 +275,13 @@ void read_steps(ComplexScene& c, const Values& values, const MethodEntry& method
       throw settings.error("lattice.time_step", "cells have steps of their own; give lattice.courant");
     p.time_step = c.courant > 0 ? c.courant * edge : values.real("lattice.time_step");
   }
+  if (!(p.time_step > 0)) throw settings.error("lattice.time_step", "must be above 0 on a mesh; use a positive one");
   settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 10");
   if (values.given("run.steps")) {
     scene.steps = values.integer("run.steps");
   } else {
     const double until = values.real("run.until");
+    if (until < 0) throw settings.error("run.until", "must be at least 0 on a mesh; use a later time");
     if (until / p.time_step > 1e12) throw settings.error("run.until", "is too many steps; use less");
     if (p.step_control) {
       scene.until = until;
@@ -318,6 +321,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     c.theory = make_theory(find_theory(p.theory), p.parameters);
     const double edge = read_space(c, values, halvings);
     const MethodEntry& method = find_method(p.method);
+    require_theory_on(*c.theory, Space::mesh);
     const bool by_method = c.has_method();
     if (by_method && c.time != MeshTime::rows)
       throw settings.error("scheme.method", "is for lattice.time = rows; leave it out");

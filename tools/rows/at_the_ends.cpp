@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lattice/index.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/monodromy.hpp"
 
 namespace delf {
@@ -75,8 +76,11 @@ AtTheEnds at_the_ends(const Scene& scene, const State& state) {
   AtTheEnds worst;
   if (lattice.space() == Space::point) return worst;
   const int times = state.exact() ? 64 : 0, between_searches = 8;
-  const double L = lattice.length(), end = scene.end(), acts = std::min(end, L),
+  const double L = lattice.length(), end = scene.end(), acts = std::min(std::abs(end), L),
                monodromy = 2 * std::numbers::pi * state.winding() + gain_of(scene.problem.parameters);
+  const auto is_driven = [&](const char* value, const char* flux) {
+    return scene.problem.parameters.has(value) || scene.problem.parameters.has(flux);
+  };
   const FieldPoints left = values_at(state, 0, 0), right = values_at(state, 0, L);
   for (int n = 0; n <= times; ++n) {
     const double t = n == 0 ? 0 : end * n / times;
@@ -94,8 +98,10 @@ AtTheEnds at_the_ends(const Scene& scene, const State& state) {
         take(worst.value, std::abs(there[a].phi - here[a].phi - monodromy), "jumps where the circle closes");
         continue;
       }
-      at_wall(lattice.left(), here[a], left[a], "moves at the left wall, which is fixed");
-      at_wall(lattice.right(), there[a], right[a], "moves at the right wall, which is fixed");
+      if (!is_driven(left_end, left_flux))
+        at_wall(lattice.left(), here[a], left[a], "moves at the left wall, which is fixed");
+      if (!is_driven(right_end, right_flux))
+        at_wall(lattice.right(), there[a], right[a], "moves at the right wall, which is fixed");
     }
     if (!lattice.is_circle() || n % between_searches != 0) continue;
     const CircleAt circle(state, L, monodromy, t);

@@ -14,6 +14,7 @@
 #include "tools/diagnosis/unwrap.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/files/plain_rows.hpp"
+#include "tools/rows/frame_of.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/scene/recorded_scene.hpp"
 
@@ -68,8 +69,8 @@ void InitialRows::read_file() {
   if (file_->sites() != lattice.sites())
     throw settings.error("lattice.sites", fmt::format("the file {} has {} sites; use as many",
                                                       scene_.initial_file.string(), file_->sites()));
-  for (int frame = scene_.initial_frame; frame < std::min(file_->frames(), scene_.initial_frame + 2); ++frame)
-    for (const double value : file_->row(frame))
+  for (const int frame : {frame_of(scene_, 0), frame_of(scene_, 1)})
+    for (const double value : frame >= 0 && frame < file_->frames() ? file_->row(frame) : std::vector<double>())
       if (!std::isfinite(value))
         throw BadInput("initial.file", fmt::format("row {} holds what is no finite number; take earlier rows", frame));
   require_same_space();
@@ -218,7 +219,7 @@ void InitialRows::require_positions(const Simulation& simulation) const {
 
 /// The fields at the vertices, in the order of the scheme's.
 std::vector<double> InitialRows::file_row(const Simulation& simulation, int row) const {
-  return in_order(simulation, file_->row(scene_.initial_frame + row));
+  return in_order(simulation, file_->row(frame_of(scene_, row)));
 }
 
 }  // namespace delf

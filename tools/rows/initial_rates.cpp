@@ -6,6 +6,7 @@
 #include "lattice/index.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "tools/files/fields_reader.hpp"
+#include "tools/rows/frame_of.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/scene/values.hpp"
 
@@ -18,26 +19,27 @@ namespace delf {
 void InitialRows::take_own_step() {
   if (scene_.problem.step_control) return;
   const double h = scene_.problem.time_step;
-  const auto given = Values(scene_.settings).maybe_real("initial.time_step");
-  const bool two = scene_.initial_frame + 1 < file_->frames();
+  auto given = Values(scene_.settings).maybe_real("initial.time_step");
+  if (given) given = std::copysign(*given, h);
+  const bool two = frame_of(scene_, 1) >= 0 && frame_of(scene_, 1) < file_->frames();
   const auto in_file = two ? step_in_file(1) : std::nullopt;
   const auto same = [&](double a, double b) {
-    return std::abs(a - b) <= 1e-9 * b + 1e-15 * std::abs(file_->time(scene_.initial_frame).value_or(0));
+    return std::abs(a - b) <= 1e-9 * std::abs(b) + 1e-15 * std::abs(file_->time(scene_.initial_frame).value_or(0));
   };
   if (in_file && given && !same(*in_file, *given))
     throw BadInput(
         "initial.time_step",
         fmt::format("initial.time_step = {:.10g}: rows {} and {} of the file are {:.10g} apart by its times; "
                     "leave it out",
-                    *given, scene_.initial_frame, scene_.initial_frame + 1, *in_file));
+                    *given, scene_.initial_frame, frame_of(scene_, 1), *in_file));
   const bool is_recorded = dynamic_cast<const FieldsReader*>(file_.get()) != nullptr;
   const auto step = given ? given : is_recorded ? std::nullopt : in_file;
   if (!step || same(*step, h)) return;
-  if (!(*step > 0) || !std::isfinite(*step))
+  if (!(*step * h > 0) || !std::isfinite(*step))
     throw BadInput("initial.file",
                    fmt::format("rows {} and {} are {:.10g} apart by their times; a row is later than the "
                                "one before it",
-                               scene_.initial_frame, scene_.initial_frame + 1, *step));
+                               scene_.initial_frame, frame_of(scene_, 1), *step));
   own_step_ = step;
 }
 
@@ -71,9 +73,9 @@ void InitialRows::start_by_rates(Simulation& simulation) const {
   const std::size_t fields = simulation.count(Role::field);
   std::vector<std::vector<double>> rows;
   bool even = true;
-  for (int j = 0; j < rows_of_rate && even && scene_.initial_frame + j < file_->frames(); ++j) {
+  for (int j = 0; j < rows_of_rate && even && frame_of(scene_, j) >= 0 && frame_of(scene_, j) < file_->frames(); ++j) {
     const auto step = j > 0 ? step_in_file(j) : std::nullopt;
-    even = !step || std::abs(*step - *own_step_) <= 1e-6 * *own_step_;
+    even = !step || std::abs(*step - *own_step_) <= 1e-6 * std::abs(*own_step_);
     if (even) rows.push_back(file_row(simulation, j));
   }
   if (rows.size() < rows_of_rate) {

@@ -12,10 +12,13 @@
 #include "lattice/index.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/moving_start.hpp"
+#include "schemes/start_values.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/rows/exact_solution.hpp"
+#include "tools/rows/frame_of.hpp"
 #include "tools/scene/mesh_methods.hpp"
 
 namespace delf {
@@ -37,6 +40,56 @@ void require_formula_has_value(const Scene& scene, std::size_t field, bool rate,
                       lattice.position(static_cast<int>(site)), site));
 }
 
+/// Row 0 determines the motion: the density is linear in φ_t.
+bool values_suffice(const Scene& scene) {
+  return is_of_first_order_in_time(make_theory(find_theory(scene.problem.theory), scene.problem.parameters)->density());
+}
+
+/// Throws BadScene for a rule that the state, or the density, does not allow.
+void check_rule(const Scene& scene, const State& state, StartRule rule) {
+  const Settings& settings = scene.settings;
+  if (rule == StartRule::exact && !state.knows_second_row())
+    throw settings.error("initial.start", "the second row of this state is not known; use centred");
+  if (rule == StartRule::centred && values_suffice(scene))
+    throw settings.error("initial.start",
+                         "the density is linear in phi_t, so that no rate enters row 1; use values, or leave it out");
+  if (rule != StartRule::values) return;
+  if (find_method(scene.problem.method).start != StartRule::values && !values_suffice(scene))
+    throw settings.error("initial.start", "is for densities that are linear in phi_t; use centred");
+  for (const char* key : {"initial.v", "initial.p"})
+    if (scene.initial.values.has(key))
+      throw settings.error(key, fmt::format("scheme.method = {} is of first order in time, and starts from "
+                                            "values alone; leave {} out",
+                                            scene.problem.method, key));
+}
+
+/// Throws BadScene for a row that leaves the surface of a constraint.
+void require_constraints(const Scene& scene, const FieldTheory& theory, const std::vector<double>& row) {
+  constexpr double small = 1e-6;  // a formula or a file may have few digits
+  const auto constraint = theory.constraint();
+  if (!constraint) return;
+  const std::size_t d = at(theory.components()), n = at(constraint->size());
+  std::vector<double> y(n), r(n);
+  for (std::size_t i = 0; i * d < row.size(); ++i)
+    for (std::size_t m = d; m < n; ++m) {
+      std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(i * d), d, y.begin());
+      std::fill(y.begin() + static_cast<std::ptrdiff_t>(d), y.end(), 0.0);
+      y[m] = 1;  // of λ G the slopes are those of G
+      constraint->residual(Cell{}, y, r);
+      double size = 0;
+      for (std::size_t a = 0; a < d; ++a) size += std::abs(r[a] * y[a]);
+      if (std::abs(r[m]) <= small * std::max(size, 1e-300)) continue;
+      const char* key = scene.from_file()                  ? "initial.file"
+                        : scene.settings.find("initial.q") ? "initial.q"
+                                                           : "initial.state";
+      throw scene.settings.error(
+          key,
+          fmt::format("breaks the constraint{}{}: it is {:.6g} at the start, and not 0; give fields on its surface",
+                      n > d + 1 ? fmt::format(" {}", m - d + 1) : "",
+                      row.size() > d ? fmt::format(" at site {}", i) : "", r[m]));
+    }
+}
+
 }  // namespace
 
 InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
@@ -45,14 +98,7 @@ InitialRows::InitialRows(const Scene& scene) : scene_(scene) {
     if (!scene.from_file()) {
       state_ = make_state(scene.initial, scene.problem.lattice);
       if (state_->exact()) require_solution(scene, *state_);
-      if (rule() == StartRule::exact && !state_->knows_second_row())
-        throw settings.error("initial.start", "the second row of this state is not known; use centred");
-      if (rule() == StartRule::values)
-        for (const char* key : {"initial.v", "initial.p"})
-          if (scene.initial.values.has(key))
-            throw settings.error(key, fmt::format("scheme.method = {} is of first order in time, and starts from "
-                                                  "values alone; leave {} out",
-                                                  scene.problem.method, key));
+      check_rule(scene, *state_, rule());
       return;
     }
     read_file();
@@ -114,11 +160,15 @@ StartRule InitialRows::rule() const {
       if (std::ranges::count(method.starts, rates) > 0) return rates;
   if (file_) return StartRule::exact;
   if (scene_.start) return *scene_.start;
-  return method.start.value_or(state_->knows_second_row() ? StartRule::exact : StartRule::centred);
+  if (method.start) return *method.start;
+  if (state_->knows_second_row()) return StartRule::exact;
+  return values_suffice(scene_) ? StartRule::values : StartRule::centred;
 }
 
 std::string InitialRows::description() const {
-  return state_ ? state_->description()
+  return state_ ? state_->description() + (rule() == StartRule::values && !find_method(scene_.problem.method).start
+                                               ? "; the density is linear in phi_t, and no rate is read"
+                                               : "")
                 : fmt::format("rows of {}, from {} {}", scene_.initial_file.string(),
                               scene_.initial_file.extension() == ".csv" ? "row" : "frame", scene_.initial_frame);
 }
@@ -128,6 +178,7 @@ void InitialRows::check(const Simulation& simulation) const {
   // the positions of sites that move are the method's to find
   if (here == (state_ && starts_by_sites(simulation, scene_.problem) ? simulation.theory().components() : fields)) {
     if (file_) require_positions(simulation);
+    require_constraints(scene_, simulation.theory(), file_ ? file_row(simulation, 0) : row0());
     return;
   }
   std::string names;
@@ -158,7 +209,7 @@ std::vector<double> InitialRows::slaved_in_file(const Simulation& simulation, in
   const auto* fields = dynamic_cast<const FieldsReader*>(file_.get());
   if (!fields || simulation.count(Role::slaved) == 0) return {};
   const FieldsReader::Shape& shape = fields->shape(Role::slaved);
-  const int frame = scene_.initial_frame + row;
+  const int frame = frame_of(scene_, row);
   if (shape.components != simulation.count(Role::slaved) || shape.sites != file_->sites() || frame >= shape.frames)
     return {};
   return fields->values(Role::slaved, frame);
@@ -217,7 +268,7 @@ void InitialRows::start_momenta(Simulation& simulation) const {
 
 /// Between row `j` of the run and the row before it; nothing if the file has no times.
 std::optional<double> InitialRows::step_in_file(int j) const {
-  const auto before = file_->time(scene_.initial_frame + j - 1), after = file_->time(scene_.initial_frame + j);
+  const auto before = file_->time(frame_of(scene_, j - 1)), after = file_->time(frame_of(scene_, j));
   return before && after ? std::optional(*after - *before) : std::nullopt;
 }
 
@@ -236,7 +287,7 @@ void InitialRows::start_by_own_step(Simulation& simulation, const std::vector<st
                  fmt::format("frames {} and {} of the file are {:.6g} apart, and the field there chooses steps of "
                              "{:.6g}; use lattice.time_step and lattice.step_control of the file, and record it with "
                              "output.every = 1",
-                             scene_.initial_frame, scene_.initial_frame + 1, *step, chosen));
+                             scene_.initial_frame, frame_of(scene_, 1), *step, chosen));
 }
 
 void InitialRows::start(Simulation& simulation) const {
@@ -264,18 +315,20 @@ void InitialRows::start(Simulation& simulation) const {
     if (rule() == StartRule::legendre)
       return simulation.start_legendre(section(simulation, &State::values, 0, false),
                                        section(simulation, &State::velocities, 0, false));
+    if (rule() == StartRule::values && simulation.starting_rows() > 1)
+      return start_from_values(simulation, section(simulation, 0), monodromy());
     std::vector<std::vector<double>> rows;
     for (int j = 0; j < simulation.starting_rows(); ++j) rows.push_back(section(simulation, j));
     if (file_ && scene_.problem.step_control) return start_by_own_step(simulation, rows);
     for (int j = 1; file_ && j < simulation.starting_rows(); ++j)
       if (const auto step = step_in_file(j);
-          step && !(std::abs(*step - h) <= 1e-9 * h + 1e-15 * std::abs(*file_->time(scene_.initial_frame + j))))
+          step && !(std::abs(*step - h) <= 1e-9 * std::abs(h) + 1e-15 * std::abs(*file_->time(frame_of(scene_, j)))))
         throw BadInput(
             "initial.frame",
             fmt::format("frames {} and {} of the file are {:.12g} apart, and the time step is {:.10g}; use "
                         "lattice.time_step = {:.12g}, {}or record with output.every = 1, or start from values "
                         "and rates by initial.time_step = {:.12g}",
-                        scene_.initial_frame + j - 1, scene_.initial_frame + j, *step, h, *step,
+                        frame_of(scene_, j - 1), frame_of(scene_, j), *step, h, *step,
                         has_reversible_steps(find_method(scene_.problem.method))
                             ? "lattice.time_steps = reversible if the field chose the steps of the file, "
                             : "",

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lattice/index.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/methods/energies.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/stability/constraint_ghost.hpp"
@@ -101,8 +102,10 @@ struct Begun {
     Problem problem = scene.problem;
     problem.winding = outcome.winding;
     outcome.energy_of = energy_of_run(problem).name;
-    own = own_energy(simulation, problem);
+    const bool driven = !key_of_driven_end(problem).empty();
+    if (!driven) own = own_energy(simulation, problem);
     if (own) names.further.emplace_back("energy_own");
+    if (driven) names.further.emplace_back(energy_less_work);
     stepping.emplace(scene, initial, simulation, names, own, outcome);
   }
   Begun(const Begun&) = delete;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "schemes/driven_ends.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/momenta.hpp"
@@ -155,12 +156,17 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
   if (own)
     outcome.conserved.push_back(
         {names.further.back() + ", " + own->entry->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+  if (names.further.size() > 0 && names.further.back() == energy_less_work) {
+    work_.emplace(simulation.evolution().system(), end_fluxes(simulation.theory(), scene.problem));
+    outcome.conserved.push_back({energy_less_work, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+  }
   outcome.iterates = simulation.evolution().stepper().iterates();
   outcome.threads = threads_in_words(simulation, scene.problem.threads);
 }
 
 void Stepping::make_first_rows() {
   first_step(simulation_, initial_, [&] { initial_.start(simulation_); });
+  add_work();
   const auto monitors = this->monitors();
   outcome_.energy_initial = monitors.energy;
   outcome_.momentum_initial = monitors.momentum;
@@ -194,6 +200,7 @@ void Stepping::visit_rows(SavedState& state) {
   state("iterations of the last step", last_iterations_);
   simulation_.visit(state);
   warnings_.visit(state);
+  if (work_) work_->visit(state);
   measures_.visit(state);
   if (section_) section_->visit(state);
 }
@@ -211,6 +218,7 @@ std::optional<double> Stepping::own_length() const {
 void Stepping::step(bool looked_at) {
   if (outcome_.steps_taken > 0) simulation_.step(looked_at);
   else first_step(simulation_, initial_, [&] { simulation_.step(looked_at); });
+  add_work();
   last_iterations_ = simulation_.iterations();
   if (const Continued why = simulation_.evolution().stepper().continued(); why != Continued::no)
     ++outcome_.continued[why];
@@ -232,8 +240,21 @@ bool Stepping::record_start() {
   return true;
 }
 
+void Stepping::add_work() {
+  const Stepper& stepper = simulation_.evolution().stepper();
+  if (work_ && stepper.newest() >= 1) work_->add(stepper.window(stepper.newest() > 1 ? 3 : 2));
+}
+
+/// The energy less the work of the ends.
+double Stepping::energy_gained(double energy) const {
+  return work_ ? energy - work_->sum(find_method(scene_.problem.method).energy != nullptr) : energy;
+}
+
+/// (E − E₀)/|E₀|; where ends do work W, E − W in place of E, and relative to E where that is larger.
 double Stepping::energy_error(double energy) const {
-  return (energy - outcome_.energy_initial) / std::abs(outcome_.energy_initial);
+  const double gap = energy_gained(energy) - outcome_.energy_initial;
+  if (work_ && gap == 0) return 0;
+  return gap / std::max(std::abs(outcome_.energy_initial), work_ ? std::abs(energy) : 0.0);
 }
 
 /// Maxima of the run.
@@ -379,6 +400,10 @@ Simulation::Monitors Stepping::monitors() const {
   if (own_energy_) {
     all.conserved.push_back(newest_own_energy(*own_energy_, simulation_));
     all.conserved_scale.push_back(std::abs(all.conserved.back()));
+  }
+  if (work_) {
+    all.conserved.push_back(energy_gained(all.energy));
+    all.conserved_scale.push_back(std::max(std::abs(all.energy), std::abs(all.energy - all.conserved.back())));
   }
   return all;
 }

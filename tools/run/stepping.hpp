@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include "schemes/methods/energies.hpp"
+#include "schemes/system/end_work.hpp"
 #include "tools/measure/measures.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/run/recorder.hpp"
@@ -12,6 +13,9 @@ namespace delf {
 
 /// "2", or how many of the requested threads share a step, and why not more; empty if one is requested.
 std::string threads_in_words(const Simulation&, int asked);
+
+/// The energy less the work that driven ends do: the last of names.further and of the conserved sums, where there are any.
+inline constexpr auto energy_less_work = "energy_less_work";
 
 /// The rows of a simulation, as its scene wants them.
 class Stepping final : public RowLoop {
@@ -40,7 +44,9 @@ class Stepping final : public RowLoop {
   void visit_rows(SavedState&) override;
   void finish() override;
 
-  double energy_error(double energy) const;  ///< relative to row 0
+  double energy_error(double energy) const;  ///< relative to row 0; of driven ends less their work
+  double energy_gained(double energy) const;
+  void add_work();
   void take(const Simulation::Monitors&, double residual);
   void judge(const Simulation::Monitors&, double residual) const;
   void require_energy(double energy) const;
@@ -66,7 +72,8 @@ class Stepping final : public RowLoop {
   RecordedRow row_;
   RecordedDatasets datasets_;
   std::optional<Section> section_;
-  std::vector<double> seen_;  ///< a row that is not recorded
+  std::optional<EndWork> work_;  ///< where an end is driven
+  std::vector<double> seen_;     ///< a row that is not recorded
   int last_iterations_ = 0;
   bool starts_again_ = false;  ///< the data of row 0 are recorded after steps
 };

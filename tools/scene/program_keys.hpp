@@ -14,6 +14,8 @@ std::vector<Parameter> scene_keys();
 /// [verify] [sweep] [convergence] [stability] [workprecision]: the keys of commands.
 std::vector<Parameter> command_keys();
 
+/// The name that stands among the choices of a key for any formula.
+inline constexpr auto formula_choice = "formula";
 /// The choices of a key that is a switch; true, yes and 1, false, no and 0 are taken too.
 inline const std::vector<std::string> on_or_off{"on", "off"};
 

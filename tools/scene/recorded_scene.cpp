@@ -8,6 +8,7 @@
 
 #include "lattice/text_parts.hpp"
 #include "schemes/declared.hpp"
+#include "schemes/driven_ends.hpp"
 
 namespace delf {
 
@@ -36,7 +37,8 @@ namespace {
                   file, key, there, here, key, there));
 }
 
-const char* name_of(Wall wall) {
+std::string name_of(const Problem& p, const char* key, Wall wall) {
+  if (const auto motion = p.parameters.maybe<std::string>(key)) return *motion;
   return wall == Wall::natural ? "natural" : wall == Wall::clamped ? "clamped" : "fixed";
 }
 
@@ -51,8 +53,8 @@ void require_recorded_space(const Scene& scene, const std::string& file,
   };
   require("lattice.space", lattice.space() == Space::point ? "point" : interval ? "interval" : "circle");
   if (!interval) return;
-  require("boundary.left", name_of(lattice.left()));
-  require("boundary.right", name_of(lattice.right()));
+  require(left_end, name_of(scene.problem, left_end, lattice.left()));
+  require(right_end, name_of(scene.problem, right_end, lattice.right()));
 }
 
 }  // namespace

@@ -12,18 +12,21 @@
 #include "jets/expressions/stencil_text.hpp"
 #include "jets/tables/named_tables.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/step_method.hpp"
 #include "schemes/system/legendre.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "tools/files/plain_rows.hpp"
 #include "tools/scene/brick_rows.hpp"
 #include "tools/scene/file_beside.hpp"
 #include "tools/scene/key_warning.hpp"
 #include "tools/scene/keys.hpp"
 #include "tools/scene/keys_of_spaces.hpp"
 #include "tools/scene/scene_parts.hpp"
+#include "tools/scene/suggestion.hpp"
 #include "tools/scene/values.hpp"
 
 namespace delf {
@@ -40,8 +43,10 @@ const std::string& chosen(const Scene& scene, DeclaredBy kind) {
   return kind == DeclaredBy::theory ? scene.problem.theory : scene.problem.method;
 }
 
-Wall wall(const Values& values, std::string_view key) {
+/// A wall that moves as a formula says has its value for data, and one where something flows in is natural.
+Wall wall(const Values& values, const std::string& key) {
   const std::string wall = values.choice(key);
+  if (values.given(key + ".flux") && !values.given(key)) return Wall::natural;
   return wall == "natural" ? Wall::natural : wall == "clamped" ? Wall::clamped : Wall::fixed;
 }
 
@@ -49,6 +54,21 @@ SpaceKind kind_of(const Lattice& lattice) {
   return lattice.is_circle()                  ? SpaceKind::circle
          : lattice.space() == Space::interval ? SpaceKind::interval
                                               : SpaceKind::point;
+}
+
+/// The formulas of an end. Throws BadScene for what is neither a wall nor a formula, and for a flux where the value is kept.
+void read_end(const Settings& settings, const Values& values, const std::string& key, Wall wall, Problem& p) {
+  static const std::vector<std::string> walls{"fixed", "clamped", "natural"};
+  const std::string flux = key + ".flux", given = values.choice(key);
+  if (values.given(flux)) {
+    if (wall != Wall::natural)
+      throw settings.error(flux, fmt::format("is for a natural wall, and {} = {}; leave one of them out", key, given));
+    p.parameters[flux] = values.text(flux).value_or("");
+  }
+  if (std::ranges::find(walls, given) != walls.end()) return;
+  if (given.find_first_not_of("abcdefghijklmnopqrstuvwxyz") == std::string::npos && given != "t" && given != "pi")
+    throw settings.error(key, "is not known" + suggestion(given, walls));
+  p.parameters[key] = given;
 }
 
 Space read_space(const Values& values) {
@@ -86,6 +106,8 @@ Problem read_problem(const Settings& settings, const Values& values) {
   p.threads = static_cast<int>(values.integer("run.threads"));
   const bool by_courant = values.given("lattice.courant");
   p.time_step = by_courant ? values.real("lattice.courant") * p.lattice.space_step() : values.real("lattice.time_step");
+  if (p.time_step == 0)
+    throw settings.error("lattice.time_step", "is no step; use a positive one, or a negative one to run backward");
   if (!std::isnormal(p.time_step))
     throw settings.error(by_courant ? "lattice.courant" : "lattice.time_step",
                          "the time step is outside the range of double precision; use another");
@@ -95,7 +117,27 @@ Problem read_problem(const Settings& settings, const Values& values) {
                          "must be reversible, or none; steps in a list or a file are for lattice.space = complex");
   p.step_control = read_step_control(settings, values);
   read_parameters(values, p);
+  if (p.lattice.space() == Space::interval) {
+    read_end(settings, values, left_end, p.lattice.left(), p);
+    read_end(settings, values, right_end, p.lattice.right(), p);
+  }
   return p;
+}
+
+/// Momenta on the command line take the place of rates in a file, and rates of momenta.
+void keep_rates_or_momenta(Settings& settings, const Values& values, const Problem& problem) {
+  const std::string momenta = "initial.p", state = values.choice("initial.state");
+  std::vector<std::string> rates;
+  if (state == "point") rates = {"initial.v"};
+  if (state == "formula") {
+    const auto theory = make_theory(find_theory(problem.theory), problem.parameters);
+    for (const Component& field : theory->fields()) {
+      if (field.name == "p") return;
+      rates.push_back("initial." + field.name + "_t");
+    }
+  }
+  for (const std::string& rate : rates)
+    if (settings.find(momenta) && settings.find(rate)) settings.keep_one_of(rate, momenta, {});
 }
 
 StateRequest read_initial(const Values& values, const Problem& problem) {
@@ -135,6 +177,19 @@ fs::path find_initial_file(const Settings& settings, const Values& values) {
   return found;
 }
 
+/// The last frame of the file that the rows come from, where a run backward begins.
+int last_frame(const Scene& scene) {
+  try {
+    const int sites = scene.problem.lattice.sites();
+    if (scene.initial_file.extension() != ".csv")
+      if (const auto plain = open_plain_rows(scene.initial_file, sites, scene.initial.components))
+        return plain->frames() - 1;
+    return open_rows(scene.initial_file)->frames() - 1;
+  } catch (const BadInput& bad) {
+    throw scene.settings.located(bad);
+  }
+}
+
 std::optional<StartRule> read_start(const Settings& settings, const Values& values, const Problem& problem) {
   if (!values.given("initial.start")) return std::nullopt;
   const std::string rule = values.choice("initial.start");
@@ -151,7 +206,11 @@ std::optional<StartRule> read_start(const Settings& settings, const Values& valu
 
 std::int64_t read_steps(const Settings& settings, const Values& values, double time_step) {
   if (values.given("run.steps")) return values.integer("run.steps");
-  const double steps = std::round(values.real("run.until") / time_step);
+  const double until = values.real("run.until"), steps = std::round(until / time_step);
+  if (until * time_step < 0)
+    throw settings.error("run.until", fmt::format("is {} t = 0, and the time step is {:.6g}; use run.until = {:g}, or "
+                                                  "run.steps",
+                                                  until < 0 ? "before" : "after", time_step, -until));
   if (!(steps <= find_key("run.steps")->range.high))
     throw settings.error(
         "run.until", fmt::format("is {:.3g} steps of {:.3g}, more than can be counted; use less", steps, time_step));
@@ -277,6 +336,7 @@ Scene read_scene(Settings given) {
   settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 100");
   try {
     scene.problem = read_problem(settings, values);
+    keep_rates_or_momenta(settings, values, scene.problem);
     scene.initial = read_initial(values, scene.problem);
   } catch (const BadInput& bad) {
     throw settings.located(bad);
@@ -289,6 +349,8 @@ Scene read_scene(Settings given) {
                            "is of rows of a file, in units of their own: states and meshes have those of the theory. "
                            "Use delf verify --fields without [initial], or initial.state = file");
   scene.initial_frame = static_cast<int>(values.integer("initial.frame"));
+  if (scene.from_file() && scene.problem.time_step < 0 && !values.given("initial.frame"))
+    scene.initial_frame = last_frame(scene);
   if (scene.from_file()) take_first_row(scene, scene.initial_file, scene.initial_frame);
   scene.start = read_start(settings, values, scene.problem);
   scene.steps = read_steps(settings, values, scene.problem.time_step);

@@ -10,6 +10,7 @@
 
 #include "jets/expressions/expression.hpp"
 #include "lattice/text_parts.hpp"
+#include "tools/scene/program_keys.hpp"
 #include "tools/scene/suggestion.hpp"
 
 namespace delf {
@@ -135,8 +136,10 @@ bool Values::toggle(std::string_view key) const {
 std::string Values::choice(std::string_view key) const {
   const std::string value = required(key);
   const auto choices = known(key).choices;
-  if (std::find(choices.begin(), choices.end(), value) == choices.end())
-    throw settings_.error(key, "is not known" + suggestion(value, choices));
+  const auto has = [&](const std::string& name) {
+    return std::find(choices.begin(), choices.end(), name) != choices.end();
+  };
+  if (!has(value) && !has(formula_choice)) throw settings_.error(key, "is not known" + suggestion(value, choices));
   return value;
 }
 

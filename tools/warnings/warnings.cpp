@@ -11,6 +11,7 @@
 
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/smooth_state.hpp"
 #include "schemes/stability/linear_stability.hpp"
@@ -202,7 +203,7 @@ Found Warnings::spurious_mode(std::span<const double> last_row) const {
 Found Warnings::energy(const Outcome& outcome) const {
   const State* state = initial_.state();
   // The energy is taken from vertices alone: of an element it says little.
-  if (!state || nodes_in_cell() > 1) return {};
+  if (!state || nodes_in_cell() > 1 || !key_of_driven_end(scene_.problem).empty()) return {};
   const auto exact = exact_energy(*state, simulation_.theory().density(), scene_.problem.lattice, width_, 0);
   if (!exact) return {};
   if (work_.reads_time() && std::isnan(work_.value())) return {};

@@ -108,7 +108,8 @@ Scene scene_of(const Scene& scene, const Problem& problem, const Resolution& r) 
   other.start.reset();
   if (find_method(problem.method).start || scene.from_file()) return other;
   if (scene.start == StartRule::centred) other.start = scene.start;
-  else if (const InitialRows rows(other); !rows.exact()) other.start = StartRule::centred;
+  else if (const InitialRows rows(other); !rows.exact() && rows.rule() != StartRule::values)
+    other.start = StartRule::centred;
   return other;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "schemes/driven_ends.hpp"
 #include "tools/scene/lists.hpp"
 #include "tools/scene/values.hpp"
 
@@ -30,12 +31,15 @@ WorkPrecisionRequest read_workprecision_request(const Scene& scene) {
   request.courants = positive_numbers(scene.settings, "workprecision.courants");
   if (!request.courants.empty() && scene.problem.lattice.space() == Space::point)
     throw scene.settings.error("workprecision.courants", "a point has no space step; leave it out");
-  if (auto asked = positive_numbers(scene.settings, "workprecision.accuracies"); !asked.empty()) request.accuracies = std::move(asked);
+  if (auto asked = positive_numbers(scene.settings, "workprecision.accuracies"); !asked.empty())
+    request.accuracies = std::move(asked);
   std::ranges::sort(request.accuracies, std::greater());
   request.repeats = static_cast<int>(values.integer("workprecision.repeats"));
   request.budget = values.real("workprecision.budget");
   request.peers = values.toggle("workprecision.peers");
   request.seed = scene.initial.seed;
+  if (const std::string end = key_of_driven_end(scene.problem); !end.empty())
+    throw scene.settings.error(end, "schemes are compared between ends at rest; leave it out");
   if (scene.problem.step_control)
     throw scene.settings.error(
         "lattice.time_steps",

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+#include <vector>
+
+#include "schemes/methods/method_registry.hpp"
+#include "schemes/problem.hpp"
+#include "schemes/system/end_work.hpp"
+
+namespace delf {
+
+/// Keys of a problem's parameters: formulas of t for the ends of an interval, one for each field, separated by semicolons.
+inline constexpr auto left_end = "boundary.left", right_end = "boundary.right", left_flux = "boundary.left.flux",
+                      right_flux = "boundary.right.flux";
+/// The key of an end that moves, or lets something flow in; empty: all rest.
+std::string key_of_driven_end(const Problem&);
+
+/// The families of these ends. Throws BadInput for those that the scheme cannot have: sites that move, traces and rows of a
+/// kernel have values of another kind, wide stencils go on by mirror images, and elements have no term for a flux.
+void add_driven_ends(SchemeParts&, const FieldTheory&, const Problem&);
+/// What flows in.
+std::vector<EndFlux> end_fluxes(const FieldTheory&, const Problem&);
+
+}  // namespace delf

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "schemes/start_values.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "lattice/error.hpp"
+#include "schemes/stepping/evolution.hpp"
+#include "schemes/system/momenta.hpp"
+#include "schemes/theories/field_theory.hpp"
+
+namespace delf {
+
+bool is_of_first_order_in_time(const BatchDensity& density) {
+  const int d = density.components();
+  bool moves = false;
+  for (int a = d; a < 2 * d; ++a) {
+    moves = moves || density.depends_on(a);
+    for (int b = d; b < 2 * d; ++b)
+      if (!density.is_zero(a, b)) return false;
+  }
+  for (int a = 3 * d; a < 5 * d && a < density.variables(); ++a)  // φ_tt, φ_tx
+    if (density.depends_on(a)) return false;
+  return moves;
+}
+
+void start_from_values(Simulation& simulation, std::span<const double> row0, double monodromy) {
+  const LatticeSystem& system = simulation.evolution().system();
+  const bool of_fields =
+      std::ranges::all_of(system.all_components(), [](const Component& c) { return c.role == Role::field; });
+  if (system.height() != 1)
+    throw BadInput("initial.start",
+                   "initial.start = values: this stencil reaches over three rows, and starts from two; use "
+                   "lattice.stencil = six-tuple, or give a solution as exact.FIELD");
+  if (!is_of_first_order_in_time(simulation.theory().density()) || !of_fields)
+    throw BadInput("initial.start", "initial.start = values: is for densities that are linear in phi_t; use centred");
+  // ½(D₂ − D₁) L(y₀, y₀), in which the terms without φ_t cancel
+  const std::vector<double> row(row0.begin(), row0.end());
+  std::vector<double> p = half_equations(system, system.window(-1, {row, row}, monodromy), 0, Side::below);
+  const std::vector<double> above = half_equations(system, system.window(0, {row, row}, monodromy), 0, Side::above);
+  for (std::size_t n = 0; n < p.size(); ++n) p[n] = 0.5 * (p[n] + above[n]);
+  simulation.start_momenta(row, p);
+}
+
+}  // namespace delf

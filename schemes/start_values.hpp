@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <span>
+
+#include "jets/batch_density.hpp"
+#include "schemes/simulation.hpp"
+
+namespace delf {
+
+/// ℓ is linear in φ_t, with factors that are functions of φ and φ_x: φ at one time determines the motion.
+bool is_of_first_order_in_time(const BatchDensity&);
+
+/// Starts from row 0 alone, of such a density: its momenta p = ∂ℓ/∂φ_t need no rate, and row 1 follows by the discrete
+/// Legendre transform. Throws BadInput for other densities, and for a scheme that reaches over three rows. `monodromy` is
+/// φ(x + L) − φ(x).
+void start_from_values(Simulation&, std::span<const double> row0, double monodromy);
+
+}  // namespace delf

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "schemes/families/driven_end.hpp"
+#include "schemes/system/assembly.hpp"
+#include "schemes/system/lattice_system.hpp"
+
+namespace delf {
+
+/// The walls of a system that move as functions of time, each with its column.
+std::vector<std::pair<int, const DrivenEnd*>> driven_ends(const LatticeSystem&);
+/// Gives them their values in a row, y[i·C + c].
+void set_driven_ends(const LatticeSystem&, std::int64_t row, std::span<double> y);
+
+/// A flux at a natural wall, as WallFlux has it in the action.
+struct EndFlux {
+  int column;
+  FormulasOfTime flux;
+};
+
+/// The work that the ends of an interval do on the field, summed from row to row,
+///
+///     W += F_j (y_{j+1} − y_{j−1})/2,    F_j = −E_j/h at a driven wall,    F_j = f(t_j) of a flux,
+///
+/// with the residual E_j that the wall's own equation would have. The energy of rows n − 1 and n less W is that of rows 0 and
+/// 1, as far as the scheme keeps energies at all.
+class EndWork {
+ public:
+  EndWork(const LatticeSystem&, std::vector<EndFlux>);
+
+  /// Rows n − 2, n − 1 and n, or 0 and 1.
+  void add(const Window&);
+  /// Between rows n − 1 and n; `at_row`: up to row n itself, of energies that are of one row.
+  double sum(bool at_row) const { return at_row ? between_ + 0.5 * (first_ + last_) : between_; }
+
+  /// SavedState, of a room above this one.
+  template <class State>
+  void visit(State& state) {
+    state("work of the ends", between_), state("work in the first row", first_), state("work in the last row", last_);
+    state("work in some row", any_);
+  }
+
+ private:
+  const LatticeSystem& system_;
+  std::vector<EndFlux> fluxes_;
+  std::unique_ptr<const Assembly> walls_;  ///< the equations that driven walls would have; null: none is driven
+  double between_ = 0, first_ = 0, last_ = 0;
+  bool any_ = false;
+};
+
+}  // namespace delf
