@@ -59,12 +59,12 @@ void add_driven_ends(SchemeParts& parts, const FieldTheory& theory, const Proble
   const std::string key = key_of_driven_end(p);
   if (key.empty()) return;
   const bool of_fields = std::ranges::all_of(parts.components, [](const Component& c) {
-    return (c.role == Role::field || c.role == Role::inner || c.role == Role::multiplier) && !c.position;
+    return (c.role == Role::field || c.role == Role::multiplier) && !c.position;
   });
   const bool mirrored = std::ranges::any_of(
       parts.families, [](const auto& family) { return family->pattern().placement == Placement::left_mirror; });
   const std::vector<EndFlux> fluxes = end_fluxes(theory, p);
-  if (!of_fields || mirrored || !parts.processor.empty() || (!fluxes.empty() && !find_method(p.method).reads_stencil))
+  if (!of_fields || mirrored || !parts.processor.empty() || find_method(p.method).energy)
     throw BadInput(
         key, fmt::format("{}: scheme.method = {} has no such end; use scheme.method = multisymplectic", key, p.method));
   for (const auto& [end, wall] : {std::pair{left_end, Placement::left_wall}, {right_end, Placement::right_wall}})

@@ -15,8 +15,8 @@ inline constexpr auto left_end = "boundary.left", right_end = "boundary.right", 
 /// The key of an end that moves, or lets something flow in; empty: all rest.
 std::string key_of_driven_end(const Problem&);
 
-/// The families of these ends. Throws BadInput for those that the scheme cannot have: sites that move, traces and rows of a
-/// kernel have values of another kind, wide stencils go on by mirror images, and elements have no term for a flux.
+/// The families of these ends. Throws BadInput for those that the scheme cannot have: sites that move, elements and rows of a
+/// kernel have values or energies of another kind, and wide stencils go on by mirror images.
 void add_driven_ends(SchemeParts&, const FieldTheory&, const Problem&);
 /// What flows in.
 std::vector<EndFlux> end_fluxes(const FieldTheory&, const Problem&);

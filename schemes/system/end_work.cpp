@@ -39,32 +39,20 @@ EndWork::EndWork(const LatticeSystem& system, std::vector<EndFlux> fluxes)
 void EndWork::add(const Window& rows) {
   const std::int64_t newest = rows.last_row(), row = newest - 1;
   const RowTimes& times = *system_.times();
-  const bool whole = rows.rows.size() > 2;  // row 0 has no stencils below it
   const auto moved = [&](int column, int component) {
     return 0.5 * (rows(newest, column, component) - rows(row - 1, column, component));
   };
-  double at_row = 0;
   if (walls_) {
     std::vector<double> E;
     walls_->residual(SectionRing(rows, row - system_.height(), row + system_.height()), row, E);
     for (int n = 0; n < walls_->size(); ++n) {
       const auto& [site, c] = walls_->equation(n);
-      const Component& component = system_.component(c);
-      if (component.at.time != 0) {  // a node inside the cell above the row, which moves by the formula's rate
-        for (const auto& [column, end] : driven_ends(system_))
-          if (column == site.space)
-            between_ -= E[at(n)] * end->rate(component.field, times.time(row) + component.at.time * times.step(row));
-      } else if (whole) {
-        at_row -= E[at(n)] / times.step(row) * moved(site.space, c);
-      }
+      sum_ -= E[at(n)] / times.step(row) * moved(site.space, c);
     }
   }
   for (const EndFlux& end : fluxes_)
-    for (std::size_t a = 0; a < end.flux.size() && whole; ++a)
-      at_row += (*end.flux[a])(times.time(row), 0) * moved(end.column, system_.field_component(static_cast<int>(a)));
-  if (!whole) return;
-  between_ += at_row, last_ = at_row;
-  if (!std::exchange(any_, true)) first_ = at_row;
+    for (std::size_t a = 0; a < end.flux.size(); ++a)
+      sum_ += (*end.flux[a])(times.time(row), 0) * moved(end.column, system_.field_component(static_cast<int>(a)));
 }
 
 }  // namespace delf

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
@@ -32,24 +33,22 @@ class EndWork {
  public:
   EndWork(const LatticeSystem&, std::vector<EndFlux>);
 
-  /// Rows n − 2, n − 1 and n, or 0 and 1.
+  /// Rows n − 2, n − 1 and n.
   void add(const Window&);
-  /// Between rows n − 1 and n; `at_row`: up to row n itself, of energies that are of one row.
-  double sum(bool at_row) const { return at_row ? between_ + 0.5 * (first_ + last_) : between_; }
+  /// Between rows n − 1 and n.
+  double sum() const { return sum_; }
 
   /// SavedState, of a room above this one.
   template <class State>
   void visit(State& state) {
-    state("work of the ends", between_), state("work in the first row", first_), state("work in the last row", last_);
-    state("work in some row", any_);
+    state("work of the ends", sum_);
   }
 
  private:
   const LatticeSystem& system_;
   std::vector<EndFlux> fluxes_;
   std::unique_ptr<const Assembly> walls_;  ///< the equations that driven walls would have; null: none is driven
-  double between_ = 0, first_ = 0, last_ = 0;
-  bool any_ = false;
+  double sum_ = 0;
 };
 
 }  // namespace delf

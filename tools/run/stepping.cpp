@@ -242,13 +242,11 @@ bool Stepping::record_start() {
 
 void Stepping::add_work() {
   const Stepper& stepper = simulation_.evolution().stepper();
-  if (work_ && stepper.newest() >= 1) work_->add(stepper.window(stepper.newest() > 1 ? 3 : 2));
+  if (work_ && stepper.newest() > 1) work_->add(stepper.window(3));
 }
 
 /// The energy less the work of the ends.
-double Stepping::energy_gained(double energy) const {
-  return work_ ? energy - work_->sum(find_method(scene_.problem.method).energy != nullptr) : energy;
-}
+double Stepping::energy_gained(double energy) const { return work_ ? energy - work_->sum() : energy; }
 
 /// (E − E₀)/|E₀|; where ends do work W, E − W in place of E, and relative to E where that is larger.
 double Stepping::energy_error(double energy) const {

@@ -124,17 +124,17 @@ Problem read_problem(const Settings& settings, const Values& values) {
   return p;
 }
 
-/// Momenta on the command line take the place of rates in a file, and rates of momenta.
+/// Momenta on the command line take the place of rates in a file, and rates of momenta: whatever of them the state reads.
 void keep_rates_or_momenta(Settings& settings, const Values& values, const Problem& problem) {
-  const std::string momenta = "initial.p", state = values.choice("initial.state");
+  const std::string momenta = "initial.p";
+  const StateEntry& entry = find_state(values.choice("initial.state"));
   std::vector<std::string> rates;
-  if (state == "point") rates = {"initial.v"};
-  if (state == "formula") {
-    const auto theory = make_theory(find_theory(problem.theory), problem.parameters);
-    for (const Component& field : theory->fields()) {
-      if (field.name == "p") return;
-      rates.push_back("initial." + field.name + "_t");
-    }
+  if (std::ranges::find(entry.parameters, "initial.v", &Parameter::key) != entry.parameters.end())
+    rates.emplace_back("initial.v");
+  const auto theory = make_theory(find_theory(problem.theory), problem.parameters);
+  for (const Component& field : theory->fields()) {
+    if (field.name == "p") return;
+    if (entry.further) rates.push_back("initial." + field.name + "_t");
   }
   for (const std::string& rate : rates)
     if (settings.find(momenta) && settings.find(rate)) settings.keep_one_of(rate, momenta, {});
