@@ -105,7 +105,7 @@ TEST_CASE("errors on the command line name key, value, reason and remedy") {
       {"--initial.state=breathr", "did you mean breather?"},
       {"--initial.speed -1.5", "--initial.speed = -1.5"},
       {"--initial.speed=nan", "not a finite number"},
-      {"--run.until=-1", "--run.until = -1: must be at least 0"},
+      {"--run.until=-1", "--run.until = -1: is before t = 0"},
       {"--run.until=1e300", "more than can be counted"},
       {"--run.steps=3 --run.steps=4", "--run.steps = 4: given twice"},
       {"--run.steps=", "run.steps"},
