@@ -24,6 +24,7 @@ struct Mesh {
   struct Part {
     std::string name;
     std::vector<std::array<std::int32_t, 2>> sides;
+    std::vector<int> lines = {};  ///< of a text
   };
   std::vector<Part> parts = {};
   std::vector<int> point_lines = {}, cell_lines = {};  ///< of the file that they were read from; empty if generated
@@ -56,7 +57,7 @@ double measure(const Mesh&, int cell);
 double shortest_edge(const Mesh&);
 /// The shortest edge of one cell.
 double shortest_edge(const Mesh&, int cell);
-/// Sides (a, b), a < b, that only one cell has, each once; of a mesh of segments its ends, (p, p).
+/// Sides (a, b), a < b, that only one cell has, each once and in order; of a mesh of segments its ends, (p, p).
 std::vector<std::array<std::int32_t, 2>> boundary_sides(const Mesh&);
 /// Points on the boundary, each once, in order: ends of curves, and points of sides that only one cell has.
 std::vector<std::int32_t> boundary_points(const Mesh&);

@@ -119,7 +119,6 @@ ComplexSolver::Report ComplexSolver::solve(std::span<double> y) const {
 void ComplexSolver::Report::add(const Report& one) {
   iterations = std::max(iterations, one.iterations);
   correction = std::max(correction, one.correction);
-  shortest = std::min(shortest, one.shortest);
   undetermined = std::max(undetermined, one.undetermined);
   ended = ended || one.ended;
 }

@@ -31,7 +31,6 @@ class ComplexSolver {
   struct Report {
     int iterations = 0;     ///< the most of a part
     double correction = 0;  ///< the last one, relative
-    double shortest = 1;    ///< the shortest step of a line search
     /// Where the equations hold to rounding and the matrix is nearly singular: how far, relative to the values, a correction
     /// would go that gains nothing. 0 otherwise.
     double undetermined = 0;

@@ -156,7 +156,6 @@ int ComplexSystem::add_stencil(int family, std::span<const int> sites, int table
   if (fresh) lists_.push_back({.family = family, .step = time_step, .time = time});
   Stencils& to = lists_[list->second];
   anchors_.push_back({list->second, static_cast<std::int32_t>(to.numbers.size())});
-  to.sites.insert(to.sites.end(), sites.begin(), sites.end());
   to.tables.push_back(table), to.numbers.push_back(number), to.measures.push_back(measure);
   to.steps.push_back(time_step);
   if (!places.empty()) to.places.push_back(std::move(places));
@@ -167,7 +166,10 @@ std::shared_ptr<const StencilFamily> ComplexSystem::family_on_row(const Stencils
                                                                   std::shared_ptr<const JetFamily>& tables) const {
   const Family& of = families_[stencils.family];
   const int sites = of.size() / components_;
-  auto listed = std::make_shared<ListedStencils>(sites, stencils.sites, complex_.sites());
+  std::vector<std::int32_t> vertices;
+  for (const auto stencil : stencils.numbers)
+    vertices.insert(vertices.end(), complex_.vertices(stencil).begin(), complex_.vertices(stencil).end());
+  auto listed = std::make_shared<ListedStencils>(sites, std::move(vertices), complex_.sites());
   if (of.density_) {
     tables = of.on(listed, stencils);
     if (components_ == of.density_->components()) return tables;

@@ -116,8 +116,8 @@ class ComplexSystem {
   /// Some stencils of a family that can be one batch.
   struct Stencils {
     int family;
-    double step, time;                                                ///< of a family without tables
-    std::vector<std::int32_t> sites = {}, tables = {}, numbers = {};  ///< `numbers`: of the stencils in the complex
+    double step, time;                                    ///< of a family without tables
+    std::vector<std::int32_t> tables = {}, numbers = {};  ///< `numbers`: of the stencils in the complex
     std::vector<double> measures = {}, steps = {};
     std::vector<std::vector<double>> places = {};  ///< of the points of a table
   };

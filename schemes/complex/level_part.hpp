@@ -148,7 +148,6 @@ class ComplexSolver::LevelPart {
       solver_->solve(E_, next);
       if (norm(next) <= (1 - share / 2) * length) break;
     }
-    report_.shortest = std::min(report_.shortest, share);
     stuck_ = share < shortest;
     undetermined_ = !direct_ && norm(E_) > size_ / 2 && relative() > rounding && is_rounding(before);
     if (undetermined_) report_.undetermined = relative();

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
@@ -68,7 +67,6 @@ SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
     add_row(times[j], 0.5 * (below + above));
     if (j == 0) continue;
     if (j == 1) motion_ = system_.add_family(space.tables.motion());
-    first_of_motion_.push_back(system_.complex().stencils());
     for (std::int32_t i = 0; i < n; ++i)
       system_.add_stencil(motion_, sites_of({rows_ - 2, rows_ - 1}, {&i, 1}), 0, space.masses[i] * below, below);
   }
@@ -127,12 +125,6 @@ void SpaceRows::add_row(double t, double measure) {
 }
 
 double SpaceRows::weight_of_constraint(int point) const { return is_still_ ? 1 : space_.masses[point]; }
-
-std::vector<std::int32_t> SpaceRows::motion(int row) const {
-  std::vector<std::int32_t> stencils(space_.sites());
-  std::iota(stencils.begin(), stencils.end(), first_of_motion_[row]);
-  return stencils;
-}
 
 std::vector<double> SpaceRows::with_multipliers(std::span<const double> fields,
                                                 std::span<const double> multipliers) const {

@@ -57,8 +57,6 @@ class SpaceRows {
 
   const ComplexSystem& system() const { return system_; }
   int rows() const { return rows_; }
-  /// The stencils that join a row and the next one.
-  std::vector<std::int32_t> motion(int row) const;
   /// Rows of fields alone with the multipliers that fit their equations best, 0 where none holds: the component of E along
   /// ∂G/∂φ is zero.
   std::vector<double> with_multipliers(std::span<const double> fields) const;
@@ -82,8 +80,7 @@ class SpaceRows {
   std::vector<int> sites_;
   std::vector<int> gradient_;         ///< family by number of corners
   std::vector<int> gradient_tables_;  ///< by cell
-  std::vector<int> first_of_motion_;
-  std::vector<double> measures_;  ///< of the stencils of each row
+  std::vector<double> measures_;      ///< of the stencils of each row
 };
 
 }  // namespace delf

@@ -38,6 +38,20 @@ std::vector<double> remainder(const Assembly& equations, const std::vector<doubl
 struct Tangent::Parity {
   Assembly equations;
   BlockSolver solver;
+
+  /// Σ|A x| over |b| for a random b is of the order of the condition number, and of 1/ε where A is singular but for
+  /// rounding, which the equations' own right sides need not show.
+  bool is_singular(const std::vector<double>& A) {
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> normal;
+    std::vector<double> b(A.empty() ? 0 : equations.size()), x, terms;
+    if (b.empty()) return false;
+    for (double& value : b) value = normal(random);
+    solver.solve(b, x);
+    remainder(equations, A, b, x, terms);
+    constexpr double most = 1e12;
+    return !(std::ranges::max(terms) <= most);
+  }
 };
 
 Tangent::~Tangent() = default;
@@ -87,7 +101,7 @@ std::vector<Window> Tangent::evolve(const Window& y, int count, std::mt19937_64&
     for (SectionRing& v : V)
       for (int n = 0; n < p.equations.size(); ++n) p.equations.value(v, J, n) = 0;
     p.equations.linearised(section, J, left_side, values);
-    if (!p.solver.factor(values)) throw singular(J);
+    if (!p.solver.factor(values) || p.is_singular(values)) throw singular(J);
     for (std::size_t v = 0; v < V.size(); ++v) {
       const std::vector<double>& E = left_side[v].E;
       // A x = Σ_known ∂E/∂y_a V_a, V_unknown = −x; once more for what rounding left

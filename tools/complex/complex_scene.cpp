@@ -201,6 +201,7 @@ std::vector<PartCondition> read_parts(const Settings& settings, const Mesh& mesh
   for (const Setting& s : settings.all()) {
     constexpr std::string_view of_boundary = "boundary.";
     if (!s.key.starts_with(of_boundary) || s.key == "boundary.mesh") continue;
+    if (&s != settings.find(s.key)) continue;  // the command line wins
     const std::string part = s.key.substr(of_boundary.size());
     if (std::ranges::find(mesh.parts, part, &Mesh::Part::name) == mesh.parts.end()) {
       std::vector<std::string> names;

@@ -19,10 +19,11 @@ namespace {
 
 constexpr std::string_view point_word = "point", cell_word = "cell", side_word = "side";
 
-void add_side(Mesh& mesh, const std::string& part, std::int32_t a, std::int32_t b) {
+void add_side(Mesh& mesh, const std::string& part, std::int32_t a, std::int32_t b, int line = 0) {
   auto found = std::ranges::find(mesh.parts, part, &Mesh::Part::name);
   if (found == mesh.parts.end()) found = mesh.parts.insert(found, {part, {}});
   found->sides.push_back({a, b});
+  if (line > 0) found->lines.push_back(line);
 }
 
 Mesh plain_mesh(TextLines& lines) {
@@ -66,7 +67,7 @@ Mesh plain_mesh(TextLines& lines) {
     if ((a == b) != (mesh.dimension == 1))
       throw MeshError(line, mesh.dimension == 1 ? "a side of segments is one point; give its number"
                                                 : "a side has two points; give their numbers");
-    add_side(mesh, part, a, b);
+    add_side(mesh, part, a, b, line);
   }
   return mesh;
 }
@@ -177,6 +178,7 @@ class Gmsh {
       const int dimension = lines_.read<int>("a dimension");
       const auto tag = lines_.read<std::int64_t>("the number of a group");
       std::string name(lines_.word());
+      while (lines_.has_words()) name += " " + std::string(lines_.word());
       std::erase(name, '"');
       groups_[{dimension, tag}] = name;
     }
@@ -328,6 +330,23 @@ void refuse_coincident(const Mesh& mesh) {
                   1e-6 * shortest_edge(mesh)));
 }
 
+/// Parts are of the boundary: lines of Gmsh inside are left out, and those of a text refused.
+void keep_boundary(Mesh& mesh) {
+  if (mesh.parts.empty()) return;
+  const auto outer = boundary_sides(mesh);
+  const auto is_inside = [&](const std::array<std::int32_t, 2>& side) {
+    return !std::ranges::binary_search(outer, std::array{std::min(side[0], side[1]), std::max(side[0], side[1])});
+  };
+  for (Mesh::Part& part : mesh.parts) {
+    for (std::size_t n = 0; n < part.lines.size(); ++n)
+      if (is_inside(part.sides[n]))
+        throw MeshError(part.lines[n],
+                        "no cell, or two of them, have this side: it is none of the boundary; correct it");
+    std::erase_if(part.sides, is_inside);
+  }
+  std::erase_if(mesh.parts, [](const Mesh::Part& part) { return part.sides.empty(); });
+}
+
 void refuse_overlaps(const Mesh& mesh) {
   const auto found = overlapping_cells(mesh);
   if (!found) return;
@@ -346,6 +365,7 @@ Mesh parse_mesh(std::string_view text, std::optional<double> merge) {
   Mesh mesh = text.starts_with("$MeshFormat") ? Gmsh(lines).read() : plain_mesh(lines);
   if (merge && *merge > 0) mesh = merged(mesh, *merge);
   if (const auto fault = find_fault(mesh)) throw MeshError(fault->line, fault->what);
+  keep_boundary(mesh);
   if (!merge) refuse_coincident(mesh);
   refuse_overlaps(mesh);
   return mesh;

@@ -129,7 +129,7 @@ void RecordedSection::check_times(double time_step) const {
     }
     if (!now && !fields_) return;  // a plain array: its rows are taken as a time step apart
     if (!now) throw wrong(fmt::format("has no dataset /time; {}", layout));
-    const double slack = 1e-9 * time_step + 1e-15 * std::abs(*now);  // times far from 0 are rounded
+    const double slack = 1e-9 * std::abs(time_step) + 1e-15 * std::abs(*now);  // times far from 0 are rounded
     const double steps = before ? (*now - *before) / time_step : 1;
     if (std::abs(steps - std::round(steps)) < 1e-6 && std::round(steps) > 1)
       throw wrong(fmt::format(

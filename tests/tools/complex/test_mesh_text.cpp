@@ -96,13 +96,16 @@ TEST_CASE("groups of Gmsh's two formats and sides of a text are the parts of a b
   CHECK(parse_mesh(msh2).parts.at(0).name == "1");
   CHECK(fault_of(square + "cell 0 1 2 3\nside left 0 4\n") ==
         "6: a side has the number of a point that is not there; correct it");
+  CHECK(fault_of(square + "cell 0 1 2\ncell 0 2 3\nside diagonal 0 2\n") ==
+        "7: no cell, or two of them, have this side: it is none of the boundary; correct it");
+  CHECK(parse_mesh(changed(of_2, "\"inflow\"", "\"wall one\"")).parts.at(0).name == "wall one");
   CHECK(fault_of(square + "cell 0 1 2 3\nside left 0\n") == "6: a side has two points; give their numbers");
 }
 
 TEST_CASE("parts of a mesh's boundary are fixed or natural by name, with the energy kept, and others are refused") {
   const Folder folder;
-  write(
-      folder / "wave.ini",
+  folder.write(
+      "wave.ini",
       "[theory]\nname = wave\n[lattice]\nspace = complex\nmesh = quadrilaterals:2,1,16,8\ncourant = 0.3\n"
       "[boundary]\nmesh = natural\nleft = fixed\n[initial]\nphi = x\nphi_t = 0\n[run]\nuntil = 1\n[output]\nfigures = off\n");
   const Ran plan = delf_program(folder, "plan wave.ini");
@@ -117,6 +120,9 @@ TEST_CASE("parts of a mesh's boundary are fixed or natural by name, with the ene
     if (x < 0.6) CHECK(last[p] == Approx(x).margin(1e-3));
     if (x == 2) CHECK(last[p] == Approx(1).margin(0.05));
   }
+  CHECK(contains(delf_program(folder, "plan wave.ini --boundary.left=natural").out, "48 boundary points, natural"));
+  CHECK(contains(delf_program(folder, "plan wave.ini --boundary.left=natural --boundary.top=fixed").out,
+                 "17 fixed, 31 natural"));
   const Ran other = delf_program(folder, "run wave.ini --boundary.inflow=fixed --out none");
   CHECK(other.code == 2);
   CHECK(
