@@ -31,7 +31,7 @@ FormulasOfTime formulas_of(const FieldTheory& theory, const Problem& p, const st
       numbers.emplace_back(name.substr(of_theory.size()), *number);
   FormulasOfTime formulas;
   for (const std::string& part : parts_of(text, ';'))
-    formulas.push_back(std::make_shared<const Formula>(part, numbers, key));
+    formulas.push_back({key, text, std::make_shared<const Formula>(part, numbers, key)});
   if (static_cast<int>(formulas.size()) != theory.components())
     throw BadInput(key, fmt::format("{} = {}: gives {}, and there are {} fields; give a formula for each, separated by "
                                     "semicolons",
@@ -45,6 +45,11 @@ std::string key_of_driven_end(const Problem& p) {
   for (const char* key : {left_end, right_end, left_flux, right_flux})
     if (!text_of_end(p, key).empty()) return key;
   return {};
+}
+
+FormulasOfTime motion_of_end(const FieldTheory& theory, const Problem& p, const char* key) {
+  const std::string motion = text_of_end(p, key);
+  return motion.empty() ? FormulasOfTime() : formulas_of(theory, p, motion, key);
 }
 
 std::vector<EndFlux> end_fluxes(const FieldTheory& theory, const Problem& p) {
@@ -68,8 +73,8 @@ void add_driven_ends(SchemeParts& parts, const FieldTheory& theory, const Proble
     throw BadInput(
         key, fmt::format("{}: scheme.method = {} has no such end; use scheme.method = multisymplectic", key, p.method));
   for (const auto& [end, wall] : {std::pair{left_end, Placement::left_wall}, {right_end, Placement::right_wall}})
-    if (const std::string motion = text_of_end(p, end); !motion.empty())
-      parts.families.push_back(std::make_shared<DrivenEnd>(wall, formulas_of(theory, p, motion, end)));
+    if (FormulasOfTime motion = motion_of_end(theory, p, end); !motion.empty())
+      parts.families.push_back(std::make_shared<DrivenEnd>(wall, std::move(motion)));
   for (const auto& [column, flux] : fluxes)
     parts.families.push_back(std::make_shared<LagrangianFamily<WallFlux>>(
         WallFlux{column == 0 ? Placement::left_wall : Placement::right_wall, flux}));

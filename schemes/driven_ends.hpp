@@ -18,6 +18,8 @@ std::string key_of_driven_end(const Problem&);
 /// The families of these ends. Throws BadInput for those that the scheme cannot have: sites that move, elements and rows of a
 /// kernel have values or energies of another kind, and wide stencils go on by mirror images.
 void add_driven_ends(SchemeParts&, const FieldTheory&, const Problem&);
+/// The motion of an end, by left_end or right_end; empty: it is not driven.
+FormulasOfTime motion_of_end(const FieldTheory&, const Problem&, const char* key);
 /// What flows in.
 std::vector<EndFlux> end_fluxes(const FieldTheory&, const Problem&);
 

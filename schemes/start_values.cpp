@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "lattice/error.hpp"
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 
@@ -22,6 +24,16 @@ bool is_of_first_order_in_time(const BatchDensity& density) {
   for (int a = 3 * d; a < 5 * d && a < density.variables(); ++a)  // φ_tt, φ_tx
     if (density.depends_on(a)) return false;
   return moves;
+}
+
+bool is_of_first_order_in_time(const Problem& problem) {
+  return is_of_first_order_in_time(make_theory(find_theory(problem.theory), problem.parameters)->density());
+}
+
+bool may_start_from_values(const Problem& problem) {
+  const MethodEntry& method = find_method(problem.method);
+  return method.start == StartRule::values ||
+         (std::ranges::count(method.starts, StartRule::values) > 0 && is_of_first_order_in_time(problem));
 }
 
 void start_from_values(Simulation& simulation, std::span<const double> row0, double monodromy) {

@@ -9,6 +9,10 @@ namespace delf {
 
 /// ℓ is linear in φ_t, with factors that are functions of φ and φ_x: φ at one time determines the motion.
 bool is_of_first_order_in_time(const BatchDensity&);
+/// Such is the density of the theory.
+bool is_of_first_order_in_time(const Problem&);
+/// The method starts from row 0 alone, whatever the density, or can where the density is such a one.
+bool may_start_from_values(const Problem&);
 
 /// Starts from row 0 alone, of such a density: its momenta p = ∂ℓ/∂φ_t need no rate, and row 1 follows by the discrete
 /// Legendre transform. Throws BadInput for other densities, and for a scheme that reaches over three rows. `monodromy` is

@@ -273,7 +273,10 @@ std::string usage() {
 
 ExitCode help(const std::string& name) {
   if (name.empty()) {
-    fmt::print("{}`delf help run` lists the keys of a scene, and `delf help KEY` the values of one.\n", usage());
+    fmt::print(
+        "{}`delf help run` lists the keys of a scene, `delf help SECTION` those of a section, and\n"
+        "`delf help KEY` the values of one.\n",
+        usage());
     return ExitCode::done;
   }
   for (const Topic& topic : topics)
@@ -283,6 +286,17 @@ ExitCode help(const std::string& name) {
     }
   if (const Parameter* key = find_key(name)) {
     print_values(*key);
+    return ExitCode::done;
+  }
+  constexpr std::string_view of_boundary = "boundary.";
+  if (name.starts_with(of_boundary)) {  // a part of a mesh's boundary, of any name
+    print_values(*find_key("boundary.mesh"));
+    return ExitCode::done;
+  }
+  const bool is_command = std::ranges::find(commands(), name, &Command::name) != std::ranges::end(commands());
+  if (!is_command &&
+      std::ranges::find(keys(), name, [](const Parameter& key) { return section_of(key.key); }) != keys().end()) {
+    print_keys(name);
     return ExitCode::done;
   }
   const Command& command = find_command(name);

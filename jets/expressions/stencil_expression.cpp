@@ -4,6 +4,7 @@
 #include "jets/expressions/constraints.hpp"
 #include "jets/expressions/parse.hpp"
 #include "lattice/error.hpp"
+#include "lattice/text_parts.hpp"
 
 namespace delf {
 
@@ -25,6 +26,9 @@ StencilExpression StencilExpression::constraint(std::string_view text, const Exp
   Graph graph;
   int sum = graph.constant(0);
   for (const std::string& constraint : constraints_of(text)) {
+    if (trimmed(constraint).empty() || trimmed(constraint).ends_with(';'))
+      throw BadInput(key, key + ": constraint " + std::to_string(values.size() - given.fields.size() + 1) +
+                              " is empty; write it, or remove the semicolon");
     const int G = parse(graph, constraint, names, key), multiplier = static_cast<int>(values.size());
     const Evaluation of_G(graph, G);
     bool any = false;

@@ -1,21 +1,43 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "jets/expressions/expression.hpp"
+#include "lattice/error.hpp"
 #include "lattice/index.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/families/stencil_family.hpp"
 
 namespace delf {
 
-/// A formula of t for each field.
-using FormulasOfTime = std::vector<std::shared_ptr<const Formula>>;
+/// A formula of t for a field at an end of an interval, of the text that `key` of a scene gives.
+struct FormulaOfTime {
+  std::string key, text;
+  std::shared_ptr<const Formula> formula;
+
+  /// Throws BadInput where it has no finite value.
+  double operator()(double t) const {
+    const double value = (*formula)(t, 0);
+    if (!std::isfinite(value))
+      throw BadInput(key,
+                     fmt::format("{} = {}: has no finite value at t = {:.6g}; write it so that it has one in every "
+                                 "row, from the one before the start on",
+                                 key, text, t));
+    return value;
+  }
+  double by_t(double t) const { return formula->by_t(t, 0); }
+};
+/// One for each field.
+using FormulasOfTime = std::vector<FormulaOfTime>;
 
 /// A wall whose value is data for all times: φ_a(t) = f_a(t). The stencil is its site, of which it says the value and varies
 /// nothing: as a fixed wall it has no equation. Steppers put the value into a row before they solve it (set_driven_ends).
@@ -27,8 +49,8 @@ class DrivenEnd final : public StencilFamily {
   }
 
   bool is_left() const { return pattern().placement == Placement::left_wall; }
-  double value(int field, double t) const { return (*motion_[at(field)])(t, 0); }
-  double rate(int field, double t) const { return motion_[at(field)]->by_t(t, 0); }
+  double value(int field, double t) const { return motion_[at(field)](t); }
+  double rate(int field, double t) const { return motion_[at(field)].by_t(t); }
 
   using StencilFamily::jacobian, StencilFamily::lagrangian, StencilFamily::residual;
   void residual(const Cell&, std::span<const double>, std::span<double> r) const override { std::ranges::fill(r, 0.0); }
@@ -72,8 +94,8 @@ struct WallFlux {
     T sum(0.0);
     const double half = 0.5 * cell.time_step, above = cell.t + cell.time_step;
     for (std::size_t a = 0; a < flux.size(); ++a) {
-      sum += (half * (*flux[a])(cell.t, 0)) * y[a];
-      sum += (half * (*flux[a])(above, 0)) * y[flux.size() + a];
+      sum += (half * flux[a](cell.t)) * y[a];
+      sum += (half * flux[a](above)) * y[flux.size() + a];
     }
     return sum;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lattice/index.hpp"
+#include "schemes/system/end_work.hpp"
 
 namespace delf {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 /// it by less than 4, but for discontinuous elements of one function, two oscillations at once: by 4.11 at the longest
 /// steps. Other roots were at 15.3 and more (Lotka–Volterra, h = 1/16), of another branch of a constraint at 10¹⁶.
 constexpr double farthest = 6;
-constexpr double clearly = 0.25;   ///< a part of the way that no doubt begins below
+constexpr double clearly = 0.25;             ///< a part of the way that no doubt begins below
 constexpr double rounding_of_motion = 1e-8;  ///< of the values: differences of high order are rounding below
 
 /// Corrections that go no further than this part of |y|, or that all shrink by four and more, leave no other root near
@@ -25,11 +26,16 @@ void raise(double& largest, double by) { largest = std::max(largest, std::abs(by
 
 }  // namespace
 
-RootWatch::RootWatch(const LatticeSystem& system) : system_(system), fields_(delf::at(system.fields())) {
+RootWatch::RootWatch(const LatticeSystem& system)
+    : system_(system), fields_(delf::at(system.fields())), has_flux_(has_flux(system)) {
   for (const Component& c : system.all_components()) {
     field_.push_back(delf::at(c.field));
     moves_.push_back(c.role == Role::field || c.position);
   }
+  for (const auto& [column, end] : driven_ends(system))
+    for (int c = 0; c < system.components(); ++c)
+      if (system.component(c).role == Role::field && system.is_held(column, c))
+        driven_.push_back(column * system.components() + c);
 }
 
 Stop RootWatch::judge(const NewtonProgress& at, const SectionRing& ring, std::int64_t J, std::int64_t solved,
@@ -47,6 +53,8 @@ Stop RootWatch::judge(const SectionRing& ring, std::int64_t J, std::int64_t solv
   int most = 0;
   for (const Values& list : lists) most = std::max(most, rows(list, J, solved));
   if (most < 2) return Stop::doubtful_root;
+  // What flows in moves the field from rest, and few rows have none of that motion.
+  if (has_flux_ && most < most_rows) return Stop::converged;
   const int components = system_.components();
   const auto each = [&](const auto& visit) {
     for (const Values& list : lists) {
@@ -76,6 +84,19 @@ Stop RootWatch::judge(const SectionRing& ring, std::int64_t J, std::int64_t solv
       raise(f.leaves[order], difference[0]);
     }
   });
+  // A driven end moves as it is given, the new row included, and what it sets off may move as far.
+  for (const Values& list : lists) {
+    if (!list.is_field || rows(list, J, solved) < most) continue;
+    for (const int at : driven_) {
+      Field& f = fields_[field_[at % components]];
+      double difference[most_rows + 1];
+      for (int m = 0; m <= most; ++m) difference[m] = ring.row(J + list.time - m)[at];
+      for (int p = 1; p <= most; ++p) {
+        for (int m = 0; m <= std::min(2, most - p + 1); ++m) raise(f.differ[delf::at(p)], difference[m]);
+        for (int m = 0; m <= most - p; ++m) difference[m] -= difference[m + 1];
+      }
+    }
+  }
   const std::size_t last = std::max<std::size_t>(2, delf::at(most) - 1);
   Stop stop = Stop::converged;
   for (const Field& f : fields_) {

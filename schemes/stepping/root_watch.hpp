@@ -19,7 +19,8 @@ namespace delf {
 ///     |∇ᵖ y_{n+1}| ≤ 2 max(|∇^{p−1} y_n|, |∇^{p−1} y_{n−1}|),
 ///
 /// so that a value further away has left the motion, or the step does not resolve it. The order p is the one whose
-/// predictors differ least.
+/// predictors differ least. Driven ends are data: their differences count on the right, those of row n + 1 too, since what
+/// they set off from rest is in no row before.
 class RootWatch {
  public:
   explicit RootWatch(const LatticeSystem&);
@@ -56,7 +57,9 @@ class RootWatch {
   const LatticeSystem& system_;
   std::vector<std::size_t> field_;  ///< of each component
   std::vector<char> moves_;         ///< components that are fields or positions of sites
+  std::vector<int> driven_;         ///< places of the values that driven ends set
   std::vector<Field> fields_;
+  bool has_flux_;
 };
 
 }  // namespace delf

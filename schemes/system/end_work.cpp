@@ -26,6 +26,12 @@ void set_driven_ends(const LatticeSystem& system, std::int64_t row, std::span<do
     }
 }
 
+bool has_flux(const LatticeSystem& system) {
+  return std::ranges::any_of(system.families(), [](const auto& family) {
+    return dynamic_cast<const LagrangianFamily<WallFlux>*>(family.get()) != nullptr;
+  });
+}
+
 EndWork::EndWork(const LatticeSystem& system, std::vector<EndFlux> fluxes)
     : system_(system), fluxes_(std::move(fluxes)) {
   Assembly::Parts parts{.equations = {}, .past = system.height(), .future = system.height()};
@@ -52,7 +58,7 @@ void EndWork::add(const Window& rows) {
   }
   for (const EndFlux& end : fluxes_)
     for (std::size_t a = 0; a < end.flux.size(); ++a)
-      sum_ += (*end.flux[a])(times.time(row), 0) * moved(end.column, system_.field_component(static_cast<int>(a)));
+      sum_ += end.flux[a](times.time(row)) * moved(end.column, system_.field_component(static_cast<int>(a)));
 }
 
 }  // namespace delf

@@ -16,6 +16,8 @@ namespace delf {
 std::vector<std::pair<int, const DrivenEnd*>> driven_ends(const LatticeSystem&);
 /// Gives them their values in a row, y[i·C + c].
 void set_driven_ends(const LatticeSystem&, std::int64_t row, std::span<double> y);
+/// Something flows in at a wall.
+bool has_flux(const LatticeSystem&);
 
 /// A flux at a natural wall, as WallFlux has it in the action.
 struct EndFlux {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "schemes/stepping/gauge.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 #include "schemes/system/slab_extent.hpp"
 
@@ -165,8 +166,9 @@ Descents descents(SolvedSlab& slab, std::uint64_t seed) {
 
 }  // namespace
 
-std::optional<Check> check_newton(const LatticeSystem& system, const SolvePlan& plan, const Window& solution,
+std::optional<Check> check_newton(const LatticeSystem& system, const SolvePlan& whole, const Window& solution,
                                   std::uint64_t seed) {
+  const SolvePlan plan = with_gauge(system, whole);
   const SlabExtent extent = slab_extent(system, plan);
   if (static_cast<int>(solution.rows.size()) < extent.past() + extent.above + 1) return std::nullopt;
   SolvedSlab slab(system, plan, solution, extent);

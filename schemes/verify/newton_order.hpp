@@ -17,8 +17,8 @@ namespace delf {
 ///     order = log(e_{n+1}/e_n) / log(e_n/e_{n−1}),    value = max(0, 2 − order)
 ///
 /// which is the middle one of the orders from up to five starts, from as far away as the field is large down to 1e-4 of
-/// that. Linear equations are solved by the first step, whatever the start: their value is 0. Nothing if the rows of
-/// the window are too few.
+/// that. Linear equations are solved by the first step, whatever the start: their value is 0. Means that no equation
+/// determines are held as steps hold them (with_gauge). Nothing if the rows of the window are too few.
 std::optional<Check> check_newton(const LatticeSystem&, const SolvePlan&, const Window& solution, std::uint64_t seed);
 
 }  // namespace delf

@@ -160,6 +160,14 @@ class AllSites final : public MeshStepping {
   std::vector<double> values_, before_, multipliers_;
 };
 
+/// True if ξ is not zero at a point that is fixed: what the symmetry conserves is taken up there.
+bool moves_boundary(const LinearSymmetry& symmetry, const CellSpace& space, const std::vector<double>& values) {
+  const std::size_t d = symmetry.shift.size();
+  for (std::size_t n = 0; n < values.size(); ++n)
+    if (space.fixed[n / d] && generator_at(symmetry, n % d, values.data() + n - n % d) != 0) return true;
+  return false;
+}
+
 /// Row n is at n h, with h = scene.problem.time_step.
 class OwnSteps final : public MeshStepping {
  public:
@@ -210,8 +218,10 @@ void MeshStepping::make_first_rows() {
   if (const auto shortest = first_lengths()) refuse_tiny_steps(c_.scene, *shortest, "<phi_t^2>");
   const MeshRow first = row(0);
   outcome_.energy_initial = first.energy;
-  for (std::size_t n = 0; n < first.momenta.size(); ++n)
+  for (std::size_t n = 0; n < first.momenta.size(); ++n) {
     outcome_.conserved[n].take(first.momenta[n].sum, first.momenta[n].absolute);
+    outcome_.conserved[n].at_walls = moves_boundary(c_.theory->symmetries()[n], *c_.space, c_.values());
+  }
 }
 
 MeshRow MeshStepping::last_row() {

@@ -21,7 +21,7 @@ struct Conserved {
   std::string name;
   double initial, final;
   double error_max;       ///< the largest |J − J_0|, relative to Σ |terms of J|: the sum itself may be zero
-  bool at_walls = false;  ///< fixed walls are no symmetry of it, and take it
+  bool at_walls = false;  ///< ends are no symmetry of it, and give or take it
 
   /// At a further row; what is not a number, as at row 0 of a start from that row alone, tells nothing.
   void take(double J, double terms);

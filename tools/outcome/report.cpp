@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "schemes/driven_ends.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/in_words.hpp"
 
@@ -89,7 +90,9 @@ std::string report(const Subject& subject, const Scene& scene, const Outcome& o)
                             : ""));
   if (std::isfinite(o.energy_final)) line("energy", energy_in_words(o));
   for (const Conserved& c : o.conserved)
-    if (c.at_walls) line("at walls", fmt::format("{} = {:.10g}; fixed walls take it", c.name, c.final));
+    if (c.at_walls)
+      line("at walls", fmt::format("{} = {:.10g}; {}", c.name, c.final,
+                                   key_of_driven_end(p).empty() ? "fixed walls take it" : "the ends give or take it"));
     else if (std::isfinite(c.final))
       line("conserved", fmt::format("{} = {:.10g}; error {:.3g} at most", c.name, c.final, c.error_max));
   if (std::isfinite(o.constraint_max)) line("constraint", fmt::format("{:.3g} at most", o.constraint_max));

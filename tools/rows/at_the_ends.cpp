@@ -10,6 +10,8 @@
 #include "lattice/index.hpp"
 #include "schemes/driven_ends.hpp"
 #include "schemes/monodromy.hpp"
+#include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 
 namespace delf {
 
@@ -81,6 +83,9 @@ AtTheEnds at_the_ends(const Scene& scene, const State& state) {
   const auto is_driven = [&](const char* value, const char* flux) {
     return scene.problem.parameters.has(value) || scene.problem.parameters.has(flux);
   };
+  const auto theory = make_theory(find_theory(scene.problem.theory), scene.problem.parameters);
+  const FormulasOfTime left_motion = motion_of_end(*theory, scene.problem, left_end),
+                       right_motion = motion_of_end(*theory, scene.problem, right_end);
   const FieldPoints left = values_at(state, 0, 0), right = values_at(state, 0, L);
   for (int n = 0; n <= times; ++n) {
     const double t = n == 0 ? 0 : end * n / times;
@@ -103,6 +108,12 @@ AtTheEnds at_the_ends(const Scene& scene, const State& state) {
       if (!is_driven(right_end, right_flux))
         at_wall(lattice.right(), there[a], right[a], "moves at the right wall, which is fixed");
     }
+    const auto follow = [&](const FormulasOfTime& motion, const FieldPoints& now, const char* words) {
+      for (std::size_t a = 0; times > 0 && a < motion.size(); ++a)
+        take(worst.value, std::abs(now[a].phi - (*motion[a].formula)(t, 0)), words);
+    };
+    follow(left_motion, here, "does not move with the left end, which is driven");
+    follow(right_motion, there, "does not move with the right end, which is driven");
     if (!lattice.is_circle() || n % between_searches != 0) continue;
     const CircleAt circle(state, L, monodromy, t);
     for (std::size_t a = 0; a < here.size(); ++a) {

@@ -15,7 +15,7 @@ struct EndChange {
 
 /// The distance of a state from what the ends of space make of it; at all times of the run where it is a solution.
 struct AtTheEnds {
-  EndChange value;  ///< the jump where a circle closes, or the motion of a fixed wall
+  EndChange value;  ///< the jump where a circle closes, or the motion of a fixed wall, or beside a driven end
   EndChange slope;  ///< slopes at natural walls, corners of a circle, rates at fixed walls: times the time that they act
   const EndChange& larger() const { return slope.change > value.change ? slope : value; }
 };

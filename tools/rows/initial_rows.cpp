@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "lattice/index.hpp"
 #include "schemes/monodromy.hpp"
@@ -15,7 +16,6 @@
 #include "schemes/start_values.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/field_theory.hpp"
-#include "schemes/theories/theory_registry.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/rows/exact_solution.hpp"
 #include "tools/rows/frame_of.hpp"
@@ -40,27 +40,57 @@ void require_formula_has_value(const Scene& scene, std::size_t field, bool rate,
                       lattice.position(static_cast<int>(site)), site));
 }
 
-/// Row 0 determines the motion: the density is linear in φ_t.
-bool values_suffice(const Scene& scene) {
-  return is_of_first_order_in_time(make_theory(find_theory(scene.problem.theory), scene.problem.parameters)->density());
-}
-
 /// Throws BadScene for a rule that the state, or the density, does not allow.
 void check_rule(const Scene& scene, const State& state, StartRule rule) {
   const Settings& settings = scene.settings;
   if (rule == StartRule::exact && !state.knows_second_row())
-    throw settings.error("initial.start", "the second row of this state is not known; use centred");
-  if (rule == StartRule::centred && values_suffice(scene))
+    throw settings.error("initial.start", fmt::format("the second row of this state is not known; use {}",
+                                                      may_start_from_values(scene.problem) ? "values" : "centred"));
+  if (rule == StartRule::centred && is_of_first_order_in_time(scene.problem))
     throw settings.error("initial.start",
                          "the density is linear in phi_t, so that no rate enters row 1; use values, or leave it out");
   if (rule != StartRule::values) return;
-  if (find_method(scene.problem.method).start != StartRule::values && !values_suffice(scene))
+  if (find_method(scene.problem.method).start != StartRule::values && !is_of_first_order_in_time(scene.problem))
     throw settings.error("initial.start", "is for densities that are linear in phi_t; use centred");
   for (const char* key : {"initial.v", "initial.p"})
     if (scene.initial.values.has(key))
       throw settings.error(key, fmt::format("scheme.method = {} is of first order in time, and starts from "
                                             "values alone; leave {} out",
                                             scene.problem.method, key));
+}
+
+/// Throws BadScene where a gradient ∂G_m/∂φ is zero, or a sum of those before it: no multipliers are determined there.
+void require_independent(const Scene& scene, const StencilFamily& constraint, std::size_t d,
+                         const std::vector<double>& row) {
+  constexpr double small = 1e-10;
+  const std::size_t n = at(constraint.size());
+  std::vector<double> y(n), r(n);
+  for (std::size_t i = 0; i * d < row.size(); ++i) {
+    std::vector<std::vector<double>> units;
+    for (std::size_t m = d; m < n; ++m) {
+      std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(i * d), d, y.begin());
+      std::fill(y.begin() + static_cast<std::ptrdiff_t>(d), y.end(), 0.0);
+      y[m] = 1;
+      constraint.residual(Cell{}, y, r);
+      std::vector<double> rest(r.begin(), r.begin() + static_cast<std::ptrdiff_t>(d));
+      const auto size = [&] { return std::sqrt(std::inner_product(rest.begin(), rest.end(), rest.begin(), 0.0)); };
+      const double whole = size();
+      for (const std::vector<double>& unit : units) {
+        const double part = std::inner_product(rest.begin(), rest.end(), unit.begin(), 0.0);
+        for (std::size_t a = 0; a < d; ++a) rest[a] -= part * unit[a];
+      }
+      const double left = size();
+      if (!(left > small * whole))
+        throw scene.settings.error(
+            "theory.constraint",
+            fmt::format("the gradient of constraint {} is {} at the start{}: they do not determine their multipliers; "
+                        "leave out what follows from the others, or start elsewhere",
+                        m - d + 1, whole > 0 ? "a sum of those of the constraints before it" : "zero",
+                        row.size() > d ? fmt::format(", at site {}", i) : ""));
+      for (double& x : rest) x /= left;
+      units.push_back(std::move(rest));
+    }
+  }
 }
 
 /// Throws BadScene for a row that leaves the surface of a constraint.
@@ -88,6 +118,7 @@ void require_constraints(const Scene& scene, const FieldTheory& theory, const st
                       n > d + 1 ? fmt::format(" {}", m - d + 1) : "",
                       row.size() > d ? fmt::format(" at site {}", i) : "", r[m]));
     }
+  require_independent(scene, *constraint, d, row);
 }
 
 }  // namespace
@@ -162,7 +193,7 @@ StartRule InitialRows::rule() const {
   if (scene_.start) return *scene_.start;
   if (method.start) return *method.start;
   if (state_->knows_second_row()) return StartRule::exact;
-  return values_suffice(scene_) ? StartRule::values : StartRule::centred;
+  return is_of_first_order_in_time(scene_.problem) ? StartRule::values : StartRule::centred;
 }
 
 std::string InitialRows::description() const {

@@ -90,6 +90,11 @@ void RowLoop::run(RunFiles& files, Checkpoints& checkpoints) {
   } catch (const SystemFailure&) {
     close();
     throw;
+  } catch (const BadInput& bad) {  // a formula without a value at a later time
+    outcome_.status = "not-finite";
+    outcome_.failure = scene_.settings.located(bad).what();
+    close();
+    throw BadScene(outcome_.failure);
   }
   close();
   if (!outcome_.failure.empty()) throw NumericalFailure(outcome_.failure);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "schemes/complex/complex_noether.hpp"
 #include "schemes/driven_ends.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
@@ -81,19 +82,21 @@ void first_step(const Simulation& simulation, const InitialRows& initial, const 
   }
 }
 
-/// True if ξ(y) = A y + b is not zero at a wall that is fixed: what the symmetry conserves is taken up there.
-bool moves_walls(const LinearSymmetry& symmetry, const std::vector<double>& row, const Lattice& lattice) {
+/// True if ξ(y) = A y + b is not zero at a wall that is fixed, or at an end that is driven, where y is of all times: what the
+/// symmetry conserves is taken up there, or comes from there.
+bool moves_walls(const LinearSymmetry& symmetry, const std::vector<double>& row, const Problem& problem) {
+  const Lattice& lattice = problem.lattice;
   if (lattice.space() != Space::interval) return false;
   const std::size_t d = symmetry.shift.size();
-  const auto moves = [&](Wall wall, std::size_t first) {
-    for (std::size_t a = 0; wall != Wall::natural && a < d; ++a) {
-      double xi = symmetry.shift[a];
-      for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * row[first + b];
-      if (xi != 0) return true;
-    }
+  const auto not_zero = [](double x) { return x != 0; };
+  const auto moves = [&](Wall wall, const char* value, const char* flux, std::size_t first) {
+    if (problem.parameters.has(value) || problem.parameters.has(flux))
+      return std::ranges::any_of(symmetry.shift, not_zero) || std::ranges::any_of(symmetry.matrix, not_zero);
+    for (std::size_t a = 0; wall != Wall::natural && a < d; ++a)
+      if (generator_at(symmetry, a, row.data() + first) != 0) return true;
     return false;
   };
-  return moves(lattice.left(), 0) || moves(lattice.right(), row.size() - d);
+  return moves(lattice.left(), left_end, left_flux, 0) || moves(lattice.right(), right_end, right_flux, row.size() - d);
 }
 
 /// The error of a row against the exact solution, at the row's own sites, which may move.
@@ -158,6 +161,7 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
         {names.further.back() + ", " + own->entry->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   if (names.further.size() > 0 && names.further.back() == energy_less_work) {
     work_.emplace(simulation.evolution().system(), end_fluxes(simulation.theory(), scene.problem));
+    density_work_.emplace(simulation, scene.problem.lattice, initial.monodromy());
     outcome.conserved.push_back({energy_less_work, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   }
   outcome.iterates = simulation.evolution().stepper().iterates();
@@ -173,8 +177,11 @@ void Stepping::make_first_rows() {
   require_energy(monitors.energy);
   for (std::size_t j = 0; j < outcome_.conserved.size(); ++j) {
     const double initial = monitors.conserved[j];
-    const bool at_walls = j < simulation_.symmetries().size() &&
-                          moves_walls(simulation_.symmetries()[j], initial_.row0(), scene_.problem.lattice);
+    // energies are conserved sums too, and of no symmetry here
+    const auto symmetry =
+        std::ranges::find(simulation_.symmetries(), outcome_.conserved[j].name, &LinearSymmetry::name);
+    const bool at_walls =
+        symmetry != simulation_.symmetries().end() && moves_walls(*symmetry, initial_.row0(), scene_.problem);
     outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0, at_walls};
   }
   if (!names_.of[Role::multiplier].empty()) outcome_.constraint_max = 0;
@@ -200,7 +207,7 @@ void Stepping::visit_rows(SavedState& state) {
   state("iterations of the last step", last_iterations_);
   simulation_.visit(state);
   warnings_.visit(state);
-  if (work_) work_->visit(state);
+  if (work_) work_->visit(state), density_work_->visit(state);
   measures_.visit(state);
   if (section_) section_->visit(state);
 }
@@ -242,11 +249,15 @@ bool Stepping::record_start() {
 
 void Stepping::add_work() {
   const Stepper& stepper = simulation_.evolution().stepper();
-  if (work_ && stepper.newest() > 1) work_->add(stepper.window(3));
+  if (!work_) return;
+  if (stepper.newest() > 1) work_->add(stepper.window(3));
+  density_work_->see();
 }
 
-/// The energy less the work of the ends.
-double Stepping::energy_gained(double energy) const { return work_ ? energy - work_->sum() : energy; }
+/// The energy less the work of the ends and of the density.
+double Stepping::energy_gained(double energy) const {
+  return work_ ? energy - work_->sum() - density_work_->sum() : energy;
+}
 
 /// (E − E₀)/|E₀|; where ends do work W, E − W in place of E, and relative to E where that is larger.
 double Stepping::energy_error(double energy) const {

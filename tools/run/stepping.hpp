@@ -14,7 +14,8 @@ namespace delf {
 /// "2", or how many of the requested threads share a step, and why not more; empty if one is requested.
 std::string threads_in_words(const Simulation&, int asked);
 
-/// The energy less the work that driven ends do: the last of names.further and of the conserved sums, where there are any.
+/// The energy less the work that driven ends do, and the density where it reads t: the last of names.further and of the
+/// conserved sums, where there are such ends.
 inline constexpr auto energy_less_work = "energy_less_work";
 
 /// The rows of a simulation, as its scene wants them.
@@ -72,7 +73,8 @@ class Stepping final : public RowLoop {
   RecordedRow row_;
   RecordedDatasets datasets_;
   std::optional<Section> section_;
-  std::optional<EndWork> work_;  ///< where an end is driven
+  std::optional<EndWork> work_;             ///< where an end is driven
+  std::optional<WorkInTime> density_work_;  ///< there too, of all rows
   std::vector<double> seen_;     ///< a row that is not recorded
   int last_iterations_ = 0;
   bool starts_again_ = false;  ///< the data of row 0 are recorded after steps

@@ -70,11 +70,11 @@ std::vector<std::string> declare_theory(Settings& settings, const TheoryEntry& e
   return fields;
 }
 
-/// A key that several states read, such as initial.p, chooses none.
-bool reads(const std::string& state, const std::string& key) {
-  const auto& entries = state_entries();
-  const auto entry = std::ranges::find(entries, state, [](const StateEntry* e) { return e->name; });
-  return entry != entries.end() && std::ranges::count((*entry)->parameters, key, &Parameter::key) > 0;
+/// A key that several states read, such as initial.p, takes the place of none.
+bool is_shared_by_states(const std::string& key) {
+  return std::ranges::any_of(state_entries(), [&](const StateEntry* entry) {
+    return std::ranges::count(entry->parameters, key, &Parameter::key) > 0;
+  });
 }
 
 void declare_states(Settings& settings, const std::vector<std::string>& fields) {
@@ -84,7 +84,7 @@ void declare_states(Settings& settings, const std::vector<std::string>& fields) 
     for (const Parameter& p : entry->further(fields)) {
       declare(settings, p, DeclaredBy::state, entry->name);
       const Setting *given = settings.find(p.key), *other = settings.find(name);
-      if (!given || (other && reads(other->value, p.key))) continue;
+      if (!given || (other && is_shared_by_states(p.key))) continue;
       // the command line wins, as it does for keys of one name
       if (other && other->value != entry->name && given->line == 0 && other->line != 0)
         settings.keep_one_of(name, p.key, {});

@@ -14,6 +14,7 @@
 #include "lattice/text_parts.hpp"
 #include "schemes/driven_ends.hpp"
 #include "schemes/monodromy.hpp"
+#include "schemes/start_values.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/step_method.hpp"
 #include "schemes/system/legendre.hpp"
@@ -67,7 +68,7 @@ void read_end(const Settings& settings, const Values& values, const std::string&
   }
   if (std::ranges::find(walls, given) != walls.end()) return;
   if (given.find_first_not_of("abcdefghijklmnopqrstuvwxyz") == std::string::npos && given != "t" && given != "pi")
-    throw settings.error(key, "is not known" + suggestion(given, walls));
+    throw settings.error(key, "is not known" + suggestion(given, walls) + ", or a formula of t");
   p.parameters[key] = given;
 }
 
@@ -124,6 +125,23 @@ Problem read_problem(const Settings& settings, const Values& values) {
   return p;
 }
 
+/// Throws BadScene for momenta beside a state that has its own, unless it is chosen in place of the one that reads them.
+void refuse_unread_momenta(const Settings& settings, const StateEntry& state, const Problem& problem,
+                           const std::vector<std::string>& fields) {
+  const std::string momenta = "initial.p";
+  const Setting *given = settings.find(momenta), *chosen = settings.find("initial.state");
+  const auto parameters = parameters_of(state, fields);
+  if (!given || (given->line > 0 && chosen && chosen->line == 0) ||
+      std::ranges::find(parameters, momenta, &Parameter::key) != parameters.end())
+    return;
+  const bool on_point = problem.lattice.space() == Space::point;
+  throw settings.error(
+      momenta, fmt::format("is of initial.state = point or formula{}, and initial.state = {} does not read it; {}",
+                           on_point ? "" : " on a point", state.name,
+                           on_point ? "set initial.state = point and give initial.q too, or give the fields by formulas"
+                                    : "leave it out"));
+}
+
 /// Momenta on the command line take the place of rates in a file, and rates of momenta: whatever of them the state reads.
 void keep_rates_or_momenta(Settings& settings, const Values& values, const Problem& problem) {
   const std::string momenta = "initial.p";
@@ -132,10 +150,13 @@ void keep_rates_or_momenta(Settings& settings, const Values& values, const Probl
   if (std::ranges::find(entry.parameters, "initial.v", &Parameter::key) != entry.parameters.end())
     rates.emplace_back("initial.v");
   const auto theory = make_theory(find_theory(problem.theory), problem.parameters);
+  std::vector<std::string> fields;
   for (const Component& field : theory->fields()) {
     if (field.name == "p") return;
+    fields.push_back(field.name);
     if (entry.further) rates.push_back("initial." + field.name + "_t");
   }
+  refuse_unread_momenta(settings, entry, problem, fields);
   for (const std::string& rate : rates)
     if (settings.find(momenta) && settings.find(rate)) settings.keep_one_of(rate, momenta, {});
 }
@@ -199,7 +220,10 @@ std::optional<StartRule> read_start(const Settings& settings, const Values& valu
   for (const MethodEntry* entry : method_entries())
     for (const StartRule start : entry->starts)
       if (rule == to_string(start)) able.insert(able.begin(), entry->name);
-  for (const StartRule start : find_method(problem.method).starts) known.emplace_back(to_string(start));
+  // where values alone start the scheme, no rule that reads rates does
+  const bool by_values = may_start_from_values(problem);
+  for (const StartRule start : find_method(problem.method).starts)
+    if ((start == StartRule::values) == by_values) known.emplace_back(to_string(start));
   throw settings.error("initial.start", fmt::format("needs scheme.method = {}; use {}", fmt::join(able, " or "),
                                                     fmt::join(known, " or ")));
 }

@@ -49,7 +49,9 @@ constexpr auto log_name = "run.log";
     _exit(static_cast<int>(ExitCode::system_failed));
   ExitCode code = ExitCode::done;
   try {
-    code = std::visit([&](const auto& scene) { return delf::run(scene, folder); }, read_any_scene(run.scene.settings));
+    AnyScene own = read_any_scene(run.scene.settings);
+    std::visit([&](auto& scene) { common_part(scene).warnings = run.scene.warnings; }, own);
+    code = std::visit([&](const auto& scene) { return delf::run(scene, folder); }, own);
   } catch (const std::exception& error) {
     std::fflush(stdout);
     fmt::print(stderr, "{}\n", error_line(error));

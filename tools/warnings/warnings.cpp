@@ -27,6 +27,7 @@
 #include "tools/warnings/energy_warnings.hpp"
 #include "tools/warnings/exact_energy.hpp"
 #include "tools/warnings/linear_limit.hpp"
+#include "tools/warnings/normal_part.hpp"
 #include "tools/warnings/vacuum_symbol.hpp"
 
 namespace delf {
@@ -151,8 +152,12 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
     return at_ends || work_.reads_time() ? Found()
                                          : energy_off_band(energy_errors, "reduce lattice.time_step, or run less far");
   };
+  // The energy of the state is that of all its rates.
+  const std::string normal = normal_part(scene_, initial_, simulation_.theory());
+  if (!normal.empty()) all.push_back(normal);
   for (Found& found : std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row),
-                                         at_ends ? Found() : energy(outcome), band(), error(outcome), at_ends,
+                                         at_ends || !normal.empty() ? Found() : energy(outcome), band(),
+                                         at_ends ? Found() : error(outcome), at_ends,
                                          without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
@@ -227,7 +232,9 @@ Found Warnings::ends(const Outcome& outcome) const {
                      ends.words, ends.change, outcome.error_linf,
                      scene_.problem.lattice.is_circle()
                          ? "keep the pulse away from both ends of lattice.length"
-                         : "give a solution that keeps its value there, or a longer lattice.length");
+                     : key_of_driven_end(scene_.problem).empty()
+                         ? "give a solution that keeps its value there, or a longer lattice.length"
+                         : "give a solution that moves as the boundary keys say, or a longer lattice.length");
 }
 
 Found Warnings::without_solution() const {

@@ -13,7 +13,7 @@ class SavedState;
 ///
 ///     W = −∫∫ ∂ℓ/∂t dx dt,    E(t) − W(t) = E(0)
 ///
-/// on jets of the symmetric rectangle of recorded rows, by the trapezium rule from one to the next.
+/// on jets of the symmetric rectangle of the rows that are seen, by the trapezium rule from one to the next.
 class WorkInTime {
  public:
   WorkInTime(const Simulation&, const Lattice&, double monodromy);
@@ -22,7 +22,9 @@ class WorkInTime {
   void see();
   /// True if ∂ℓ/∂t is not zero on a row that was seen.
   bool reads_time() const { return largest_power_ > 0; }
-  /// W so far; not a number where the density does not read t, or too few rows were seen.
+  /// W so far, 0 where nothing was seen to do work.
+  double sum() const { return all_.work; }
+  /// The same for reports; not a number where the density does not read t, or too few rows were seen.
   double value() const;
   /// The part of W that its records may have missed: what the rule on half of them differs by, and half a step's work.
   double uncertainty() const;

@@ -106,6 +106,22 @@ TEST_CASE("momenta on the command line take the place of rates in a scene, under
   CHECK(row(folder, "rates") == row(folder, "momenta"));
 }
 
+TEST_CASE("momenta beside a state that has its own are refused, with what reads them") {
+  const Folder folder;
+  for (const std::string scene : {"kepler --initial.p=0,1.9", "pendulum --initial.p=0.3"}) {
+    const Ran ran = delf_program(folder, "run " + scene + " --out out");
+    CHECK(ran.code == 2);
+    CHECK(ran.err.find("set initial.state = point and give initial.q too") != std::string::npos);
+    CHECK(ran.err.find("initial.phi") == std::string::npos);
+  }
+  const Ran kink = delf_program(folder, "run kink --initial.p=0.4 --out out");
+  CHECK(kink.code == 2);
+  CHECK(kink.err.find("initial.state = kink does not read it; leave it out") != std::string::npos);
+  CHECK(delf_program(folder, "run kepler --initial.state=point --initial.q=1,0 --initial.p=0,1.1 --run.until=1 "
+                             "--output.figures=off --out out")
+            .code == 0);
+}
+
 TEST_CASE("a negative time step runs backward from the last rows of a file") {
   const Folder folder;
   const std::string kink =

@@ -75,6 +75,41 @@ TEST_CASE("a sum that fixed walls take is not said to be conserved") {
   const Reported natural(wave, "--boundary.left=natural --boundary.right=natural");
   CHECK(contains(natural.report, "conserved  translation"));
   CHECK(natural.summary["conserved"][0]["at_walls"] == false);
+  // nor is what flows in at an end
+  const Reported flux(wave, "'--boundary.left.flux=sin(t)' --boundary.right=natural");
+  CHECK(contains(flux.report, "at walls   translation = "));
+  CHECK(contains(flux.report, "; the ends give or take it"));
+  CHECK(contains(flux.report, "conserved  energy_less_work = "));
+  // energies are of no symmetry, whose sums a stencil of three rows has not
+  const Reported rows(wave, "--lattice.stencil=nine-tuple '--boundary.left=0.1*sin(t)'");
+  CHECK(rows.code == 0);
+  CHECK_FALSE(contains(rows.report, "at walls"));
+
+  const std::string mesh =
+      "[theory]\nname = wave\n[lattice]\nspace = complex\nmesh = rectangle:2,1,8,4\ncourant = 0.3\n"
+      "[initial]\nphi = sin(pi*x/4)*sin(pi*y/2)\nphi_t = 0\n[run]\nuntil = 1\n";
+  CHECK(contains(Reported(mesh).report, "at walls   translation = "));
+  CHECK(contains(Reported(mesh, "--boundary.mesh=natural").report, "conserved  translation = "));
+}
+
+TEST_CASE("driven ends and a density that reads t work together, and the energy less both works is kept") {
+  const Reported both("[theory]\ndensity = exp(0.3*t)*(0.5*phi_t^2 - 0.5*phi_x^2 - 0.5*phi^2)\n" +
+                      lattice("interval", "3", 97) +
+                      "[initial]\nphi = sin(pi*x/3)\n[boundary]\nleft = 0.4*sin(2*t)\n[run]\nuntil = 4\n");
+  REQUIRE(both.code == 0);
+  const auto& kept = both.summary["conserved"].back();
+  CHECK(kept["name"] == "energy_less_work");
+  CHECK(kept["at_walls"] == false);
+  CHECK(kept["error_max"] < 0.01);
+  CHECK(std::abs(both.summary["energy_work"].get<double>()) > 0.1);
+}
+
+TEST_CASE("a solution that a driven end does not follow is named, and no finer steps are advised") {
+  const Reported off("[theory]\nname = wave\n" + lattice("interval", "1", 65) +
+                     "[exact]\nphi = 0.01*sin(t - x)\n[boundary]\nleft = sin(t)\nright = 0.01*sin(t - 1)\n"
+                     "[run]\nuntil = 1\n");
+  CHECK(off.warns("does not move with the left end, which is driven"));
+  CHECK_FALSE(off.warns("raise lattice.sites"));
 }
 
 TEST_CASE("the report names the observer and the row of the energy, and a better energy of the scheme's own") {
