@@ -207,7 +207,7 @@ def test_a_single_field_has_its_name_in_a_folder_too(tmp_path):
 def test_keys_that_another_command_reads_are_warned_of():
     with pytest.warns(UserWarning, match="^verify.variations = 3: warning: only `delf verify` reads it$"):
         delf.run("kink", until=1, **{"verify.variations": 3})
-    with pytest.warns(UserWarning, match="^sweep.jobs = 2: warning: only `delf sweep` reads it$"):
+    with pytest.warns(UserWarning, match="^sweep.jobs = 2: warning: only `delf sweep` or `delf compare` reads it$"):
         delf.verify("kink", until=1, sweep_jobs=2)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
