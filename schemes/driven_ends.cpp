@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
 #include <utility>
 
 #include "lattice/error.hpp"
@@ -13,6 +12,7 @@
 #include "schemes/families/driven_end.hpp"
 #include "schemes/families/lagrangian_family.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theory_numbers.hpp"
 
 namespace delf {
 namespace {
@@ -24,11 +24,7 @@ std::string text_of_end(const Problem& p, const char* key) {
 /// Formulas of t, with the numbers that the theory declares.
 FormulasOfTime formulas_of(const FieldTheory& theory, const Problem& p, const std::string& text,
                            const std::string& key) {
-  constexpr std::string_view of_theory = "theory.";
-  std::vector<std::pair<std::string, double>> numbers;
-  for (const auto& [name, value] : p.parameters)
-    if (const double* number = std::get_if<double>(&value); number && name.starts_with(of_theory))
-      numbers.emplace_back(name.substr(of_theory.size()), *number);
+  const auto numbers = theory_numbers(p.parameters);
   FormulasOfTime formulas;
   for (const std::string& part : parts_of(text, ';'))
     formulas.push_back({key, text, std::make_shared<const Formula>(part, numbers, key)});

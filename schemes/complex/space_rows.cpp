@@ -8,6 +8,7 @@
 
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
+#include "schemes/system/constraint_slopes.hpp"
 
 namespace delf {
 CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, bool fixed_boundary,
@@ -22,13 +23,10 @@ CellSpace::CellSpace(Mesh mesh_, std::shared_ptr<const BatchDensity> density_, b
 
 void CellSpace::each_constraint(std::span<const double> values, const UseConstraint& use) const {
   const std::size_t d = fields();
-  std::vector<double> y(d + 1), r(d + 1);
+  ConstraintSlopes G(*constraint, d);
   for (std::size_t i = 0; i * d < values.size(); ++i) {
-    // L = λ G(φ), here with λ = 1
-    std::ranges::copy(values.subspan(i * d, d), y.begin());
-    y[d] = 1;
-    constraint->residual({1, 1, 0, 0}, y, r);
-    use(i, r[d], {r.data(), d});
+    const double value = G.at(0, values.subspan(i * d, d));
+    use(i, value, G.slopes());
   }
 }
 

@@ -25,6 +25,7 @@
 #include "schemes/simulation.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_on_space.hpp"
+#include "schemes/theory_numbers.hpp"
 #include "schemes/unknown_name.hpp"
 
 namespace delf {
@@ -199,13 +200,8 @@ std::shared_ptr<const StencilFamily> on_values(const FieldTheory& theory, const 
   if (theory.components() > 1)
     throw BadInput(lagrangian_key, fmt::format("{}: is for one field, and the theory has {}; use {}", lagrangian_key,
                                                theory.components(), point_key));
-  constexpr std::string_view prefix = "theory.";
-  std::vector<std::pair<std::string, double>> numbers;
-  for (const auto& [key, value] : p.parameters)
-    if (const double* number = std::get_if<double>(&value); number && key.starts_with(prefix))
-      numbers.emplace_back(key.substr(prefix.size()), *number);
   auto family = std::make_shared<LagrangianFamily<StencilExpression>>(StencilExpression::lagrangian(
-      lagrangian, StencilPattern(stencil_sites(sites, sites_key)), numbers, lagrangian_key));
+      lagrangian, StencilPattern(stencil_sites(sites, sites_key)), theory_numbers(p.parameters), lagrangian_key));
   require_action_of(theory, *family, p);
   return family;
 }

@@ -16,6 +16,7 @@
 #include "schemes/states/momenta.hpp"
 #include "schemes/states/parameters.hpp"
 #include "schemes/states/state_registry.hpp"
+#include "schemes/theory_numbers.hpp"
 
 namespace delf {
 namespace initial {
@@ -138,11 +139,7 @@ bool names_a_field(const std::vector<std::string>& fields) { return std::ranges:
 
 std::unique_ptr<State> formula(const StateBuild& build) {
   // theory.NAME as NAME, and the length of space
-  std::vector<std::pair<std::string, double>> numbers;
-  constexpr std::string_view of_theory = "theory.";
-  for (const auto& [key, value] : build.values)
-    if (const double* number = std::get_if<double>(&value); number && key.starts_with(of_theory))
-      numbers.emplace_back(key.substr(of_theory.size()), *number);
+  std::vector<std::pair<std::string, double>> numbers = theory_numbers(build.values);
   if (build.lattice.space() != Space::point) numbers.emplace_back("L", build.lattice.length());
 
   const auto text_of = [&](const std::string& key) { return build.values.maybe<std::string>(key); };

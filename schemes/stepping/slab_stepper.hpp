@@ -11,6 +11,7 @@
 #include "schemes/stepping/root_watch.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 #include "schemes/stepping/step_method.hpp"
+#include "schemes/system/end_work.hpp"
 
 namespace delf {
 
@@ -115,7 +116,8 @@ class SlabStepper final : public StepMethod {
       residual_bytes_to_come() const;
 
   const LatticeSystem& system_;
-  const SolvePlan plan_;  ///< with_gauge()
+  const DrivenEnds driven_ends_;  ///< listed once: steps look at no family for them
+  const SolvePlan plan_;          ///< with_gauge()
   StepOptions options_;
   int components_, past_ = 0, future_ = 0, delay_ = 0, starting_rows_ = 0;
   std::optional<MeshWatch> mesh_;  ///< where it moves

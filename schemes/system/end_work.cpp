@@ -7,17 +7,17 @@
 
 namespace delf {
 
-std::vector<std::pair<int, const DrivenEnd*>> driven_ends(const LatticeSystem& system) {
-  std::vector<std::pair<int, const DrivenEnd*>> ends;
+DrivenEnds driven_ends(const LatticeSystem& system) {
+  DrivenEnds ends;
   for (const auto& family : system.families())
     if (const auto* end = dynamic_cast<const DrivenEnd*>(family.get()))
       ends.emplace_back(end->is_left() ? 0 : system.lattice().sites() - 1, end);
   return ends;
 }
 
-void set_driven_ends(const LatticeSystem& system, std::int64_t row, std::span<double> y) {
+void set_driven_ends(const LatticeSystem& system, const DrivenEnds& ends, std::int64_t row, std::span<double> y) {
   const RowTimes& times = *system.times();
-  for (const auto& [column, end] : driven_ends(system))
+  for (const auto& [column, end] : ends)
     for (int c = 0; c < system.components(); ++c) {
       const Component& component = system.component(c);
       if (component.role != Role::multiplier && system.is_held(column, c))

@@ -13,9 +13,10 @@
 namespace delf {
 
 /// The walls of a system that move as functions of time, each with its column.
-std::vector<std::pair<int, const DrivenEnd*>> driven_ends(const LatticeSystem&);
+using DrivenEnds = std::vector<std::pair<int, const DrivenEnd*>>;
+DrivenEnds driven_ends(const LatticeSystem&);
 /// Gives them their values in a row, y[i·C + c].
-void set_driven_ends(const LatticeSystem&, std::int64_t row, std::span<double> y);
+void set_driven_ends(const LatticeSystem&, const DrivenEnds&, std::int64_t row, std::span<double> y);
 /// Something flows in at a wall.
 bool has_flux(const LatticeSystem&);
 

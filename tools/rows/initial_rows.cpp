@@ -15,6 +15,7 @@
 #include "schemes/moving_start.hpp"
 #include "schemes/start_values.hpp"
 #include "schemes/stepping/step_density.hpp"
+#include "schemes/system/constraint_slopes.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/rows/exact_solution.hpp"
@@ -63,16 +64,12 @@ void check_rule(const Scene& scene, const State& state, StartRule rule) {
 void require_independent(const Scene& scene, const StencilFamily& constraint, std::size_t d,
                          const std::vector<double>& row) {
   constexpr double small = 1e-10;
-  const std::size_t n = at(constraint.size());
-  std::vector<double> y(n), r(n);
+  ConstraintSlopes G(constraint, d);
   for (std::size_t i = 0; i * d < row.size(); ++i) {
     std::vector<std::vector<double>> units;
-    for (std::size_t m = d; m < n; ++m) {
-      std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(i * d), d, y.begin());
-      std::fill(y.begin() + static_cast<std::ptrdiff_t>(d), y.end(), 0.0);
-      y[m] = 1;
-      constraint.residual(Cell{}, y, r);
-      std::vector<double> rest(r.begin(), r.begin() + static_cast<std::ptrdiff_t>(d));
+    for (std::size_t m = 0; m < G.constraints(); ++m) {
+      G.at(m, std::span(row).subspan(i * d, d));
+      std::vector<double> rest(G.slopes().begin(), G.slopes().end());
       const auto size = [&] { return std::sqrt(std::inner_product(rest.begin(), rest.end(), rest.begin(), 0.0)); };
       const double whole = size();
       for (const std::vector<double>& unit : units) {
@@ -85,7 +82,7 @@ void require_independent(const Scene& scene, const StencilFamily& constraint, st
             "theory.constraint",
             fmt::format("the gradient of constraint {} is {} at the start{}: they do not determine their multipliers; "
                         "leave out what follows from the others, or start elsewhere",
-                        m - d + 1, whole > 0 ? "a sum of those of the constraints before it" : "zero",
+                        m + 1, whole > 0 ? "a sum of those of the constraints before it" : "zero",
                         row.size() > d ? fmt::format(", at site {}", i) : ""));
       for (double& x : rest) x /= left;
       units.push_back(std::move(rest));
@@ -98,25 +95,23 @@ void require_constraints(const Scene& scene, const FieldTheory& theory, const st
   constexpr double small = 1e-6;  // a formula or a file may have few digits
   const auto constraint = theory.constraint();
   if (!constraint) return;
-  const std::size_t d = at(theory.components()), n = at(constraint->size());
-  std::vector<double> y(n), r(n);
+  const std::size_t d = at(theory.components());
+  ConstraintSlopes G(*constraint, d);
   for (std::size_t i = 0; i * d < row.size(); ++i)
-    for (std::size_t m = d; m < n; ++m) {
-      std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(i * d), d, y.begin());
-      std::fill(y.begin() + static_cast<std::ptrdiff_t>(d), y.end(), 0.0);
-      y[m] = 1;  // of λ G the slopes are those of G
-      constraint->residual(Cell{}, y, r);
+    for (std::size_t m = 0; m < G.constraints(); ++m) {
+      const auto fields = std::span(row).subspan(i * d, d);
+      const double value = G.at(m, fields);
       double size = 0;
-      for (std::size_t a = 0; a < d; ++a) size += std::abs(r[a] * y[a]);
-      if (std::abs(r[m]) <= small * std::max(size, 1e-300)) continue;
+      for (std::size_t a = 0; a < d; ++a) size += std::abs(G.slopes()[a] * fields[a]);
+      if (std::abs(value) <= small * std::max(size, 1e-300)) continue;
       const char* key = scene.from_file()                  ? "initial.file"
                         : scene.settings.find("initial.q") ? "initial.q"
                                                            : "initial.state";
       throw scene.settings.error(
           key,
           fmt::format("breaks the constraint{}{}: it is {:.6g} at the start, and not 0; give fields on its surface",
-                      n > d + 1 ? fmt::format(" {}", m - d + 1) : "",
-                      row.size() > d ? fmt::format(" at site {}", i) : "", r[m]));
+                      G.constraints() > 1 ? fmt::format(" {}", m + 1) : "",
+                      row.size() > d ? fmt::format(" at site {}", i) : "", value));
     }
   require_independent(scene, *constraint, d, row);
 }

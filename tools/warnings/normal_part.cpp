@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lattice/index.hpp"
+#include "schemes/system/constraint_slopes.hpp"
 #include "schemes/system/legendre.hpp"
 
 namespace delf {
@@ -17,9 +18,7 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-double product_of(const Numbers& a, const Numbers& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
+double product_of(const Numbers& a, const Numbers& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
 void add_times(double factor, const Numbers& more, Numbers& to) {
   for (std::size_t a = 0; a < to.size(); ++a) to[a] += factor * more[a];
 }
@@ -37,7 +36,8 @@ Numbers rounded(Numbers numbers) {
 std::string normal_part(const Scene& scene, const InitialRows& initial, const FieldTheory& theory) {
   const auto constraint = theory.constraint();
   if (!constraint || !initial.state() || scene.problem.lattice.space() != Space::point) return {};
-  const std::size_t d = at(theory.components()), n = at(constraint->size());
+  const std::size_t d = at(theory.components());
+  ConstraintSlopes G(*constraint, d);
   std::vector<FieldPoint> start(d);
   initial.state()->at(0, 0, start);
   Numbers q, v;
@@ -45,13 +45,10 @@ std::string normal_part(const Scene& scene, const InitialRows& initial, const Fi
   const auto at_rest = velocity_of(theory.density(), q, Numbers(d, 0.0));
   if (!at_rest) return {};
   std::vector<Numbers> units, velocities;
-  Numbers lost_p(d, 0.0), lost_v(d, 0.0), y(n, 0.0), r(n);
-  std::ranges::copy(q, y.begin());
-  for (std::size_t m = d; m < n; ++m) {
-    std::fill(y.begin() + static_cast<std::ptrdiff_t>(d), y.end(), 0.0);
-    y[m] = 1;  // of λ G the slopes are those of G
-    constraint->residual(Cell{}, y, r);
-    Numbers unit(r.begin(), r.begin() + static_cast<std::ptrdiff_t>(d));
+  Numbers lost_p(d, 0.0), lost_v(d, 0.0);
+  for (std::size_t m = 0; m < G.constraints(); ++m) {
+    G.at(m, q);
+    Numbers unit(G.slopes().begin(), G.slopes().end());
     for (std::size_t e = 0; e < units.size(); ++e) add_times(-product_of(unit, velocities[e]), units[e], unit);
     auto velocity = velocity_of(theory.density(), q, unit);
     if (!velocity) return {};
