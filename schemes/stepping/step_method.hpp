@@ -31,7 +31,7 @@ struct StepOptions {
 /// Rounding allows no smaller one: Stepper takes this in its place.
 inline constexpr double smallest_tolerance = 4 * std::numeric_limits<double>::epsilon();
 
-/// Tolerances below this ask for all that rounding allows: there nothing is left to an estimate.
+/// Tolerances below this ask for all that rounding allows: to what it leaves of y.
 inline constexpr double smallest_estimated = 0.99e-13;
 
 /// Beyond this squares overflow, and with them every energy: nothing that could be reported is a number any more.

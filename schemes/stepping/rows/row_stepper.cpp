@@ -23,6 +23,8 @@ namespace {
 
 constexpr double round_off = std::numeric_limits<double>::epsilon();
 constexpr int most_components = 32;
+/// A correction contracts at most so many times worse than the one before it: the ratio of two is seen within a few per cent.
+constexpr double more_than_seen = 4;
 
 // The passes of a step over its rows, strip by strip. Each returns the largest |y_{n+1}|, and in `corrections` the largest
 // |δ| of each source term.
@@ -126,8 +128,8 @@ struct RowStepper::Impl {
   }
   void choose_order() {
     tolerance->see_span(table);
-    predictor.choose(table, n(), source_rows_there, tolerance->gains(), contraction_now(),
-                     tolerance->enough(largest, contraction_now()), system.time_step());
+    predictor.choose(table, n(), source_rows_there, tolerance->gains(), contraction_now(), tolerance->enough(largest),
+                     system.time_step());
   }
   double contraction_now() { return tolerance->contraction().next_change(largest, n()); }
   bool is_stiff(double size) { return tolerance && tolerance->contraction().is_stiff(size, n()); }
@@ -140,24 +142,27 @@ struct RowStepper::Impl {
     if (!equations.iterates()) return set_largest(explicit_pass(rows));
     double value = predicted_pass(rows, source_rows_there > 0 ? predictor.order() : 0, corrections);
     if (overflowed(value)) return set_largest(value);
-    const double by = contraction_now(), enough = tolerance->enough(std::max({value, largest, largest_before}), by);
+    const double size = std::max({value, largest, largest_before});
+    double by = contraction_now();
+    const double enough = tolerance->enough(size);
     double effect = tolerance->effect_of(corrections);
     for (iterations = 1; !(effect <= enough);) {
       if (!(effect < 1e100)) return give_up(Continued::slow);
       if (iterations >= options.max_iterations) return give_up(Continued::out_of_iterations);
       // An estimate of what is left after this correction may spare its evaluation.
-      const bool is_last = options.tolerance >= smallest_estimated && by * effect <= enough;
+      const bool is_last = by * effect <= enough;
       value = correction_pass(rows, is_last ? nullptr : &corrections);
       if (overflowed(value)) return give_up(Continued::slow);
-      if (is_last) break;
       ++iterations;
+      if (is_last) break;
       const double before = effect;
       effect = tolerance->effect_of(corrections);
       // Corrections that no longer shrink are rounding, if they are small, or else the fixed point does not contract.
       if (iterations >= 3 && effect > 0.5 * before) {
-        if (effect <= 64 * round_off * std::max({value, largest, largest_before})) break;
+        if (effect <= 64 * round_off * size) break;
         return give_up(Continued::slow);
       }
+      by = std::min(by, more_than_seen * effect / before);
     }
     return may_have_other_roots(value) ? give_up(Continued::stiff) : set_largest(value);
   }

@@ -81,19 +81,16 @@ void StepTolerance::see_span(const RowTable& table) {
   }
 }
 
-/// The error that the tolerance allows: relative to what the field spans, as its mean may have drifted anywhere, but
-/// not below what rounding leaves at its size.
-double StepTolerance::allowed(double size) const {
+/// A share of the tolerance, which is relative to what the field spans, as its mean may have drifted anywhere, but not below
+/// what rounding leaves at its size. The share: a prediction's error has the same sign step after step, and moves the energy,
+/// in 5000 collisions (N = 255, h = k/8, tolerance 6e-8) by 1e-4 with all of the tolerance, out of the band that the paper
+/// prints with 0.04 of it, and by this share as little as the exact root. The smallest tolerances ask for all that can be
+/// seen: for half a unit in the last place of y, with which the extremes of that energy differ by 6e-10 of it.
+double StepTolerance::enough(double size) const {
+  constexpr double share = 0.01;
+  if (tolerance_ < smallest_estimated) return 0.5 * round_off_of_step * size;
   const double spanned = span_ > 0 ? std::min(span_, size) : size;
-  return std::max(tolerance_ * spanned, 4 * round_off_of_step * size);
-}
-
-/// The share of the tolerance that is left to a prediction: its error has the same sign step after step, and moves the
-/// energy, in 5000 collisions (N = 255, h = k/8, tolerance 6e-8) by 1e-4 with all of the tolerance, by this share as
-/// little as the exact root. The smallest tolerances ask for all that rounding allows: no less is left then.
-double StepTolerance::share(double contraction) const {
-  constexpr double left_to_predictions = 0.01;
-  return tolerance_ >= smallest_estimated ? left_to_predictions : std::min(contraction, 1.0) / 64;
+  return share * std::max(tolerance_ * spanned, 4 * round_off_of_step * size);
 }
 
 }  // namespace delf

@@ -21,18 +21,14 @@ class StepTolerance {
   double effect_of(const std::vector<double>& changes) const;
   /// Takes the span of row y_n, max y − min y; what is allowed is relative to it from here on.
   void see_span(const RowTable&);
-  /// The error at which a prediction or a last correction is good enough, for fields whose largest |y| is `size`, where
-  /// one more iteration would correct it by `contraction` times less.
-  double enough(double size, double contraction) const { return share(contraction) * allowed(size); }
+  /// The error at which a prediction or a last correction is good enough, for fields whose largest |y| is `size`.
+  double enough(double size) const;
   Contraction& contraction() { return contraction_; }
 
   void restart() { span_ = 0, contraction_.restart(); }
   void visit(SavedState& state) { state("span", span_), contraction_.visit(state); }
 
  private:
-  double share(double contraction) const;
-  double allowed(double size) const;
-
   const RowEquations& equations_;
   const RowLayout& layout_;
   int d_;
