@@ -310,7 +310,8 @@ double Simulation::residual() const { return impl_->stepper.residual(); }
 const char* Simulation::solve_kind() const { return to_string(impl_->evolution.plan().kind); }
 std::string Simulation::solve_summary() const {
   std::string words = solve_in_words(impl_->evolution.plan(), impl_->stepper);
-  if (has_undetermined_means(impl_->system, impl_->evolution.plan())) words += fmt::format("; {}", gauge_in_words);
+  if (const auto means = undetermined_means(impl_->system, impl_->evolution.plan()); !means.empty())
+    words += fmt::format("; {}", gauge_in_words(impl_->system, means));
   return words;
 }
 std::string Simulation::plan_report() const {

@@ -208,8 +208,13 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
 }
 
 void SlabStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
-  for (const Component& c : system_.all_components())
+  for (const Component& c : system_.all_components()) {
+    if (c.role == Role::multiplier && system_.lattice().space() == Space::point)
+      throw BadInput("initial.start",
+                     "initial.start = centred: not with a constraint; use scheme.method = cgvi with scheme.tableau = "
+                     "stormer-verlet, which starts from rates, or give a solution as exact.FIELD");
     if (c.role != Role::field || starting_rows_ != 2) return StepMethod::start_centred(row0, velocity);
+  }
   std::vector<double> driven = row0;
   set_driven_ends(system_, driven_ends_, 0, driven);
   const Window first = system_.window(0, {driven}, options_.monodromy);
