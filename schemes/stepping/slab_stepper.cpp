@@ -187,7 +187,8 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
                                                  "which the positions grow",
                                                  *i, *i + 1, r));
     std::ranges::copy(rows[r], ring_->row(static_cast<std::int64_t>(r)));
-    set_driven_ends(system_, driven_ends_, static_cast<std::int64_t>(r), {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
+    set_driven_ends(system_, driven_ends_, static_cast<std::int64_t>(r),
+                    {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
     std::fill_n(ring_->low(static_cast<std::int64_t>(r)), rows[r].size(), 0.0);
     largest_[1] = std::exchange(largest_[0], largest_of(rows[r].data()));
   }
@@ -514,6 +515,7 @@ void SlabStepper::keep_means(std::int64_t J) {
   const double* const before = ring_->row(J - 1);
   double *const row = ring_->row(J), *const low = ring_->low(J);
   for (std::size_t c = 0; c < C; ++c) {
+    if (plan_.table.held[c] == 0) continue;  // of site 0
     double gap = 0;
     for (std::size_t at = c; at < size; at += C) gap += before[at] - row[at];
     gap /= static_cast<double>(size / C);
