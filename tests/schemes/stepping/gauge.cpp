@@ -111,6 +111,37 @@ TEST_CASE("of two fields only the mean of a potential is a gauge, and a step kee
   CHECK(std::abs(of_v - 0.3 * std::cos(2.01)) < 0.01);  // its mean moves by v_tt + v = 0
 }
 
+TEST_CASE("fields of first order beside others start from row 0 and the others' rates: second order in time") {
+  const auto row_at = [](double time_step) {
+    Problem p =
+        potential("0.5*u_x*u_t + u_x^3/6 - 0.5*u_xx^2 + 0.5*v_t^2 - 0.5*v_x^2 - 0.5*v^2 + 0.1*v*u_x", 33, time_step);
+    p.parameters["theory.fields"] = "v, u";
+    Row row, rates;
+    for (int i = 0; i < 33; ++i) {
+      const double x = p.lattice.position(i);
+      row.push_back(0.3 + std::cos(x)), row.push_back(0.5 + std::sin(x));
+      rates.push_back(0.4 * std::sin(x)), rates.push_back(0);
+    }
+    Simulation simulation(p);
+    simulation.start_centred(row, rates);
+    simulation.steps(static_cast<int>(std::lround(0.5 / time_step)) - 1);
+    Row last(66);
+    simulation.copy_row(0, last);
+    return last;
+  };
+  const Row finest = row_at(0.5 / 1600);
+  const auto off = [&](double time_step) {
+    const Row row = row_at(time_step);
+    double most = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) most = std::max(most, std::abs(row[i] - finest[i]));
+    return most;
+  };
+  const double coarse = off(0.5 / 50), fine = off(0.5 / 100);
+  CAPTURE(coarse, fine);
+  CHECK(fine < 1e-2);
+  CHECK(std::abs(std::log2(coarse / fine) - 2) < 0.2);
+}
+
 TEST_CASE("an equation that determines the mean leaves no gauge") {
   Problem wave = potential("0.5*phi_t^2 - 0.5*phi_x^2", 33, 0.05);
   CHECK_FALSE(has_gauge(wave));
