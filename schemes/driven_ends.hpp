@@ -15,8 +15,8 @@ inline constexpr auto left_end = "boundary.left", right_end = "boundary.right", 
 /// The key of an end that moves, or lets something flow in; empty: all rest.
 std::string key_of_driven_end(const Problem&);
 
-/// The families of these ends. Throws BadInput for those that the scheme cannot have: sites that move, elements and rows of a
-/// kernel have values or energies of another kind, and wide stencils go on by mirror images.
+/// The families of these ends. Throws BadInput for those that the scheme cannot have: rows of a kernel are not the field,
+/// coefficients of a basis are not its values, and wide stencils go on by mirror images.
 void add_driven_ends(SchemeParts&, const FieldTheory&, const Problem&);
 /// The motion of an end, by left_end or right_end; empty: it is not driven.
 FormulasOfTime motion_of_end(const FieldTheory&, const Problem&, const char* key);

@@ -14,6 +14,7 @@
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/row_monitors.hpp"
+#include "schemes/start_values.hpp"
 #include "schemes/starting_rows.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/gauge.hpp"
@@ -211,6 +212,9 @@ void Simulation::start_centred(std::span<const double> row0, std::span<const dou
   std::vector<std::vector<double>> rows{{row0.begin(), row0.end()}};
   if (impl_->problem.circle_valued) rows = impl_->starts.lifted(rows);
   impl_->starts.check_mirrors(rows[0]);
+  const bool of_fields = std::ranges::all_of(components(), [](const Component& c) { return c.role == Role::field; });
+  if (of_fields && impl_->system.height() == 1 && has_field_of_first_order(impl_->theory->density()))
+    return start_from_rates(*this, rows[0], velocity, monodromy_of(impl_->problem));
   impl_->stepper.start_centred(rows[0], {velocity.begin(), velocity.end()});
 }
 
@@ -310,7 +314,8 @@ double Simulation::residual() const { return impl_->stepper.residual(); }
 const char* Simulation::solve_kind() const { return to_string(impl_->evolution.plan().kind); }
 std::string Simulation::solve_summary() const {
   std::string words = solve_in_words(impl_->evolution.plan(), impl_->stepper);
-  if (has_undetermined_means(impl_->system, impl_->evolution.plan())) words += fmt::format("; {}", gauge_in_words);
+  if (const auto means = undetermined_means(impl_->system, impl_->evolution.plan()); !means.empty())
+    words += fmt::format("; {}", gauge_in_words(impl_->system, means));
   return words;
 }
 std::string Simulation::plan_report() const {

@@ -26,6 +26,16 @@ bool is_of_first_order_in_time(const BatchDensity& density) {
   return moves;
 }
 
+bool has_field_of_first_order(const BatchDensity& density) {
+  const int d = density.components();
+  for (int a = d; a < 2 * d; ++a) {
+    bool inert = false;
+    for (int b = d; b < 2 * d; ++b) inert = inert || !density.is_zero(a, b);
+    if (!inert && density.depends_on(a)) return true;
+  }
+  return false;
+}
+
 bool is_of_first_order_in_time(const Problem& problem) {
   return is_of_first_order_in_time(make_theory(find_theory(problem.theory), problem.parameters)->density());
 }
@@ -47,9 +57,18 @@ void start_from_values(Simulation& simulation, std::span<const double> row0, dou
   if (!is_of_first_order_in_time(simulation.theory().density()) || !of_fields)
     throw BadInput("initial.start", "initial.start = values: is for densities that are linear in phi_t; use centred");
   // ½(D₂ − D₁) L(y₀, y₀), in which the terms without φ_t cancel
+  start_from_rates(simulation, row0, std::vector<double>(row0.size(), 0.0), monodromy);
+}
+
+void start_from_rates(Simulation& simulation, std::span<const double> row0, std::span<const double> v,
+                      double monodromy) {
+  const LatticeSystem& system = simulation.evolution().system();
   const std::vector<double> row(row0.begin(), row0.end());
-  std::vector<double> p = half_equations(system, system.window(-1, {row, row}, monodromy), 0, Side::below);
-  const std::vector<double> above = half_equations(system, system.window(0, {row, row}, monodromy), 0, Side::above);
+  std::vector<double> before = row, after = row;
+  for (std::size_t n = 0; n < row.size(); ++n)
+    before[n] -= system.time_step() * v[n], after[n] += system.time_step() * v[n];
+  std::vector<double> p = half_equations(system, system.window(-1, {before, row}, monodromy), 0, Side::below);
+  const std::vector<double> above = half_equations(system, system.window(0, {row, after}, monodromy), 0, Side::above);
   for (std::size_t n = 0; n < p.size(); ++n) p[n] = 0.5 * (p[n] + above[n]);
   simulation.start_momenta(row, p);
 }

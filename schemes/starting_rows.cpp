@@ -51,9 +51,8 @@ void StartingRows::hold_walls(std::vector<double>& row, bool velocity) const {
   }
   for (const auto& [column, end] : driven_ends(system_))
     for (int c = 0; c < C && velocity; ++c)
-      if (const Component& component = system_.component(c);
-          component.role != Role::multiplier && system_.is_held(column, c))
-        row[column * C + c] = end->rate(component.field, component.at.time * system_.time_step());
+      if (const Component& component = system_.component(c); is_given(system_, column, c, *end))
+        row[column * C + c] = end->rate(component.field, 0, system_.time_step(), component.at.time);
 }
 
 void StartingRows::check_mirrors(const std::vector<double>& row) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "jets/tables/table_product.hpp"
 
+#include <cstddef>
 #include <vector>
 
 #include "lattice/index.hpp"
@@ -51,6 +52,36 @@ StencilTable product(const StencilTable& time, const StencilTable& space) {
   multiply(time.points, table.points);
   multiply(time.tests, table.tests);
   table.lower_side = space.points;
+  return table;
+}
+
+StencilTable at_one_site(const StencilTable& product) {
+  StencilTable table{.pattern = {}, .points = {}, .nodes = product.nodes};
+  std::vector<int> vertices;  // of the product, by those of the site
+  for (int l = 0; l < product.pattern.size(); ++l) {
+    const Site& v = product.pattern.vertices[l];
+    if (v.space != 0 || product.nodes[v.node].space != 0) continue;
+    vertices.push_back(l), table.pattern.vertices.push_back(v);
+  }
+  if (vertices.empty()) return table;
+  const std::size_t width = at(product.pattern.size()) / vertices.size();
+  // each point of time is there once for every point of space
+  const std::size_t of_space = product.lower_side.size();
+  const auto sum = [&](const std::vector<TablePoint>& points) {
+    std::vector<TablePoint> sums;
+    for (std::size_t n = 0; n < points.size(); n += of_space) {
+      TablePoint point{.weight = 0, .time = points[n].time, .slots = {}};
+      for (std::size_t s = 0; s < of_space; ++s) point.weight += points[n + s].weight;
+      for (const JetSlot slot : {JetSlot::phi, JetSlot::phi_t}) {
+        std::vector<double> weights(vertices.size(), 0.0);
+        for (const auto& [vertex, weight] : points[n][slot]) weights[at(vertex) / width] += weight;
+        point.set(slot, weights);
+      }
+      sums.push_back(std::move(point));
+    }
+    return sums;
+  };
+  table.points = sum(product.points), table.tests = sum(product.tests);
   return table;
 }
 

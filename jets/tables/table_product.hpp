@@ -15,4 +15,8 @@ namespace delf {
 /// Its lower side is the table of space: a time table starts at node 0 of row 0.
 StencilTable product(const StencilTable& time, const StencilTable& space);
 
+/// The table of time of such a product at the site of its anchor, whose nodes keep their numbers: functions and weights of
+/// space add up to 1.
+StencilTable at_one_site(const StencilTable& product);
+
 }  // namespace delf

@@ -209,7 +209,7 @@ SolvePlan planned_on_mesh(const Lattice& lattice, const SystemPattern& system, S
   plan.cyclic = false;
   long long sites = 0, unknowns = 0, blocks = 0;
   for (int i = 0; i < lattice.sites(); ++i) {
-    plan.table.held.push_back(lattice.is_fixed(i));
+    plan.table.held.insert(plan.table.held.end(), at(system.components), lattice.is_fixed(i));
     sites += !lattice.is_fixed(i);
   }
   for (int c = 0; c < system.components; ++c) unknowns += plan.table.entries[c].solved;

@@ -16,7 +16,7 @@ const SolvePlan::Entry& SolvePlan::node(int site, int component, int parity) con
 }
 
 bool SolvePlan::solved(int site, int component) const {
-  if (is_held(site)) return false;
+  if (is_held(site, component)) return false;
   return node(site, component, 0).solved || node(site, component, table.parities - 1).solved;
 }
 
@@ -38,9 +38,9 @@ Slab SolvePlan::slab(int J) const {
   Slab slab;
   slab.matched = table.matched;
   const int N = table.lattice_sites;
-  for (int site = 0; site < N; ++site) {
-    if (is_held(site)) continue;
-    for (int component = 0; component < components; ++component)
+  for (int site = 0; site < N; ++site)
+    for (int component = 0; component < components; ++component) {
+      if (is_held(site, component)) continue;
       for (int parity = 0; parity < table.parities; ++parity) {
         const Entry& e = node(site, component, parity);
         if (!e.solved) continue;
@@ -48,13 +48,13 @@ Slab SolvePlan::slab(int J) const {
         if ((unknown.time - parity) % table.parities == 0) {
           slab.unknowns.push_back({unknown, component});
           if (slab.matched)
-            slab.equations.push_back({{unknown.time + e.equation_time, ((site + e.equation_space) % N + N) % N},
-                                      e.equation_component});
+            slab.equations.push_back(
+                {{unknown.time + e.equation_time, ((site + e.equation_space) % N + N) % N}, e.equation_component});
         }
         if (!slab.matched && (equation.time - parity) % table.parities == 0)
           slab.equations.push_back({equation, component});
       }
-  }
+    }
   return slab;
 }
 

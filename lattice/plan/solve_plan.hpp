@@ -93,13 +93,16 @@ struct SolvePlan {
     bool matched = true;  ///< the matching repeats between the walls
     bool regular = true;  ///< one unknown and one equation for each (site, component) in every slab
     std::vector<Entry> entries;
-    std::vector<char> held = {};   ///< [site] on a mesh: values are data, whatever the entry says; else empty
+    /// [site·components + component]: values that are data whatever the entry says, on a mesh or as a gauge; else empty.
+    std::vector<char> held = {};
     int position(int site) const;  ///< of a site of the lattice
   } table;
 
  private:
   const Entry& node(int site, int component, int parity) const;
-  bool is_held(int site) const { return !table.held.empty() && table.held[site] != 0; }
+  bool is_held(int site, int component) const {
+    return !table.held.empty() && table.held[site * components + component] != 0;
+  }
 };
 
 /// Throws BadInput: "lattice.sites" if the brick wall does not close on the circle or every value is data, "theory.name"

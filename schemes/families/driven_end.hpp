@@ -12,6 +12,9 @@
 #include <vector>
 
 #include "jets/expressions/expression.hpp"
+#include "jets/tables/line_basis.hpp"
+#include "jets/tables/line_rule.hpp"
+#include "jets/tables/stencil_table.hpp"
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
 #include "schemes/families/lagrangian_family.hpp"
@@ -40,17 +43,26 @@ struct FormulaOfTime {
 using FormulasOfTime = std::vector<FormulaOfTime>;
 
 /// A wall whose value is data for all times: φ_a(t) = f_a(t). The stencil is its site, of which it says the value and varies
-/// nothing: as a fixed wall it has no equation. Steppers put the value into a row before they solve it (set_driven_ends).
+/// nothing: as a fixed wall it has no equation. Steppers put the value into a row before they solve it (set_driven_ends). Nodes
+/// inside a step have the value at their time; in broken elements that of the polynomial through f at the points of Lobatto's
+/// rule, so that both ends of a step are joined there too.
 class DrivenEnd final : public StencilFamily {
  public:
-  DrivenEnd(Placement wall, FormulasOfTime motion)
+  /// `functions` of a broken element; 0: steps share their ends, or have none.
+  DrivenEnd(Placement wall, FormulasOfTime motion, int functions = 0)
       : StencilFamily(StencilPattern({{0, 0}}, wall), fields(motion.size()), true), motion_(std::move(motion)) {
     varied_.assign(motion_.size(), false);
+    if (functions > 1) through_ = lobatto_rule(functions).points;
   }
 
   bool is_left() const { return pattern().placement == Placement::left_wall; }
-  double value(int field, double t) const { return motion_[at(field)](t); }
-  double rate(int field, double t) const { return motion_[at(field)].by_t(t); }
+  /// Of a node at this part of the step h that begins at t.
+  double value(int field, double t, double h, double part) const {
+    return at_node(t, h, part, [&](double time) { return motion_[at(field)](time); });
+  }
+  double rate(int field, double t, double h, double part) const {
+    return at_node(t, h, part, [&](double time) { return motion_[at(field)].by_t(time); });
+  }
 
   using StencilFamily::jacobian, StencilFamily::lagrangian, StencilFamily::residual;
   void residual(const Cell&, std::span<const double>, std::span<double> r) const override { std::ranges::fill(r, 0.0); }
@@ -67,12 +79,22 @@ class DrivenEnd final : public StencilFamily {
     for (std::size_t a = 0; a < count; ++a) list.push_back({0, static_cast<int>(a)});
     return list;
   }
+  template <class F>
+  double at_node(double t, double h, double part, const F& f) const {
+    if (through_.empty() || part == 0) return f(t + part * h);
+    const std::vector<double> functions = LagrangeBasis(through_).values(part);
+    double sum = 0;
+    for (std::size_t m = 0; m < functions.size(); ++m) sum += functions[m] * f(t + through_[m] * h);
+    return sum;
+  }
   FormulasOfTime motion_;
+  std::vector<double> through_;  ///< parts of a step
 };
 
-/// The flux into a natural wall: the action has ∫ Σ_a f_a(t) φ_a dt there besides, by the trapezoidal rule from row to row,
+/// The flux into a natural wall: the action has ∫ Σ_a f_a(t) φ_a dt there besides, by a quadrature of a step in time. Between
+/// rows it is the trapezoidal rule; of elements and sub-steps it is their own, with their test functions,
 ///
-///     L = ½h Σ_a (f_a(t) y⁰_a + f_a(t + h) y¹_a),
+///     L = h Σ_q w_q Σ_a f_a(t + c_q h) φ_a(c_q),      φ_a(c) = Σ_j ψ_j(c) y_ja
 ///
 /// so that the wall has ±∂ℓ/∂φ_x = f, at the left and at the right: of ℓ = … − ½φ_x² f is the slope along the outer normal,
 /// and the force on the field.
@@ -81,21 +103,33 @@ struct WallFlux {
 
   Placement wall;
   FormulasOfTime flux;
+  StencilTable time = trapezoidal();  ///< at the site of the wall
 
-  StencilPattern pattern() const { return StencilPattern({{0, 0}, {1, 0}}, wall); }
+  static StencilTable trapezoidal() {
+    StencilTable table{.pattern = {}, .points = {}};
+    table.pattern.vertices = {{0, 0}, {1, 0}};
+    for (const int row : {0, 1}) {
+      TablePoint point{.weight = 0.5, .time = static_cast<double>(row), .slots = {}};
+      point.set(JetSlot::phi, row == 0 ? std::vector{1.0, 0.0} : std::vector{0.0, 1.0});
+      table.points.push_back(std::move(point));
+    }
+    return table;
+  }
+  StencilPattern pattern() const { return StencilPattern(time.pattern.vertices, wall); }
   std::vector<VertexValue> values() const {
-    std::vector<VertexValue> list;
-    for (const int vertex : {0, 1})
-      for (std::size_t a = 0; a < flux.size(); ++a) list.push_back({vertex, static_cast<int>(a)});
-    return list;
+    return values_at_every_vertex(time.pattern, static_cast<int>(flux.size()));
   }
   template <class T>
   T operator()(std::span<const T> y, const Cell& cell) const {
     T sum(0.0);
-    const double half = 0.5 * cell.time_step, above = cell.t + cell.time_step;
-    for (std::size_t a = 0; a < flux.size(); ++a) {
-      sum += (half * flux[a](cell.t)) * y[a];
-      sum += (half * flux[a](above)) * y[flux.size() + a];
+    for (std::size_t q = 0; q < time.points.size(); ++q) {
+      const TablePoint& point = time.points[q];
+      const double t = cell.t + point.time * cell.time_step;
+      for (std::size_t a = 0; a < flux.size(); ++a) {
+        const double force = point.weight * cell.time_step * flux[a](t);
+        for (const auto& [vertex, psi] : time.test(q)[JetSlot::phi])
+          sum += (force * psi) * y[at(vertex) * flux.size() + a];
+      }
     }
     return sum;
   }

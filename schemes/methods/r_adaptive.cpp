@@ -20,6 +20,7 @@
 #include "jets/tables/table_product.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/families/mesh_constraint.hpp"
 #include "schemes/methods/element_parts.hpp"
 #include "schemes/methods/energies.hpp"
@@ -139,6 +140,11 @@ SchemeParts r_adaptive_parts(const FieldTheory& theory, const Problem& p) {
     if (time.tableau.empty()) parts.symmetries.clear();
     return parts;
   }
+  if (const std::string key = key_of_driven_end(p); !key.empty() && time.tableau.empty())
+    throw BadInput(key,
+                   fmt::format("{}: the work of such an end on a mesh that moves is not known with scheme.time = {}; "
+                               "use scheme.time = gauss2 with scheme.strategy = control",
+                               key, time.name));
   const bool varied = strategy(p) == "multiplier";
   if (varied && !time.multipliers)
     throw BadInput(

@@ -36,10 +36,12 @@ bool is_balanced(const LatticeSystem& system, const SolvePlan& plan, int compone
 
 }  // namespace
 
-bool has_undetermined_means(const LatticeSystem& system, const SolvePlan& plan) {
-  if (!may_have_gauge(system, plan)) return false;
+std::vector<int> undetermined_means(const LatticeSystem& system, const SolvePlan& plan) {
+  if (!may_have_gauge(system, plan)) return {};
+  std::vector<int> undetermined;
   for (int c = 0; c < system.components(); ++c)
-    if (!is_balanced(system, plan, c)) return false;
+    if (is_balanced(system, plan, c)) undetermined.push_back(c);
+  if (undetermined.empty()) return {};
   const SlabExtent extent = slab_extent(system, plan);
   const int past = std::max(plan.history, extent.below + 1);
   const std::size_t size = at(system.lattice().sites() * system.components());
@@ -52,7 +54,7 @@ bool has_undetermined_means(const LatticeSystem& system, const SolvePlan& plan) 
   std::vector<double> J, E, absolute;
   equations.jacobian(ring, 0, J);
   equations.residual(ring, 0, E, &absolute);
-  for (int c = 0; c < system.components(); ++c) {
+  std::erase_if(undetermined, [&](int c) {
     std::vector<double> sums(at(equations.size()), 0.0), terms(sums);
     for (std::size_t n = 0; n < J.size(); ++n) {
       const auto& [equation, unknown] = equations.places()[n];
@@ -60,18 +62,33 @@ bool has_undetermined_means(const LatticeSystem& system, const SolvePlan& plan) 
     }
     double all = 0, all_terms = 0;
     for (int n = 0; n < equations.size(); ++n) {
-      if (!(std::abs(sums[n]) <= rounding_of_sums * terms[n])) return false;
+      if (!(std::abs(sums[n]) <= rounding_of_sums * terms[n])) return true;
       if (equations.equation(n).component == c) all += E[n], all_terms += absolute[n];
     }
-    if (!(std::abs(all) <= rounding_of_sums * all_terms)) return false;
-  }
-  return true;
+    return !(std::abs(all) <= rounding_of_sums * all_terms);
+  });
+  return undetermined;
+}
+
+std::string gauge_in_words(const LatticeSystem& system, const std::vector<int>& undetermined) {
+  if (static_cast<int>(undetermined.size()) == system.components())
+    return "no equation determines the mean of a row, which is that of row 0";
+  std::string names;
+  for (const int c : undetermined) names += (names.empty() ? "" : ", ") + system.component(c).name;
+  return "no equation determines the mean of " + names + " in a row, which is that of row 0";
 }
 
 SolvePlan with_gauge(const LatticeSystem& system, SolvePlan plan) {
-  if (!has_undetermined_means(system, plan)) return plan;
-  plan.table.held.assign(at(system.lattice().sites()), 0);
-  plan.table.held.front() = 1;
+  const int C = system.components();
+  for (const int c : undetermined_means(system, plan)) {
+    plan.table.held.resize(at(system.lattice().sites() * C), 0);
+    plan.table.held[at(c)] = 1;
+    // the equation that is left out is the field's own, whichever its unknown is matched with
+    for (std::size_t n = 0; n < plan.table.entries.size(); ++n)
+      if (const SolvePlan::Entry& entry = plan.table.entries[n];
+          entry.solved && static_cast<int>(n) / plan.table.parities % C == c && entry.equation_component != c)
+        plan.table.matched = false;
+  }
   return plan;
 }
 

@@ -125,8 +125,10 @@ std::string plan_report(const LatticeSystem& system, const SolvePlan& plan, cons
   std::istringstream lines(plan.report());
   const char* head = "solve        ";
   for (std::string line; std::getline(lines, line); head = "             ") out += head + line + '\n';
-  if (has_undetermined_means(system, plan))
-    out += fmt::format("gauge        {}; site 0 has no equation, which the others imply\n", gauge_in_words);
+  if (const std::vector<int> means = undetermined_means(system, plan); !means.empty())
+    out += fmt::format("gauge        {}; site 0 has no equation{}, which the others imply\n",
+                       gauge_in_words(system, means),
+                       static_cast<int>(means.size()) < system.components() ? " of it" : "");
   if (!stepper.iterates() && !stepper.layout()) out += "step         " + solver + '\n';
   else if (!stepper.layout())
     out +=

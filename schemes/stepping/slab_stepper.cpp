@@ -187,7 +187,8 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
                                                  "which the positions grow",
                                                  *i, *i + 1, r));
     std::ranges::copy(rows[r], ring_->row(static_cast<std::int64_t>(r)));
-    set_driven_ends(system_, driven_ends_, static_cast<std::int64_t>(r), {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
+    set_driven_ends(system_, driven_ends_, static_cast<std::int64_t>(r),
+                    {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
     std::fill_n(ring_->low(static_cast<std::int64_t>(r)), rows[r].size(), 0.0);
     largest_[1] = std::exchange(largest_[0], largest_of(rows[r].data()));
   }
@@ -208,8 +209,13 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
 }
 
 void SlabStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
-  for (const Component& c : system_.all_components())
+  for (const Component& c : system_.all_components()) {
+    if (c.role == Role::multiplier && system_.lattice().space() == Space::point)
+      throw BadInput("initial.start",
+                     "initial.start = centred: not with a constraint; use scheme.method = cgvi with scheme.tableau = "
+                     "stormer-verlet, which starts from rates, or give a solution as exact.FIELD");
     if (c.role != Role::field || starting_rows_ != 2) return StepMethod::start_centred(row0, velocity);
+  }
   std::vector<double> driven = row0;
   set_driven_ends(system_, driven_ends_, 0, driven);
   const Window first = system_.window(0, {driven}, options_.monodromy);
@@ -509,6 +515,7 @@ void SlabStepper::keep_means(std::int64_t J) {
   const double* const before = ring_->row(J - 1);
   double *const row = ring_->row(J), *const low = ring_->low(J);
   for (std::size_t c = 0; c < C; ++c) {
+    if (plan_.table.held[c] == 0) continue;  // of site 0
     double gap = 0;
     for (std::size_t at = c; at < size; at += C) gap += before[at] - row[at];
     gap /= static_cast<double>(size / C);

@@ -25,7 +25,7 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
     const Placement at = family->pattern().placement;
     return (at == Placement::left_wall || at == Placement::right_wall) && !family->made_of();
   });
-  if (has_own_walls || has_undetermined_means(system, plan))
+  if (has_own_walls || !undetermined_means(system, plan).empty())
     return std::make_unique<SlabStepper>(system, plan, options);
   const bool processed = !options.processor.empty();
   const bool mirrored = std::ranges::any_of(

@@ -12,6 +12,7 @@
 #include "schemes/families/mesh_constraint.hpp"
 #include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
+#include "schemes/system/end_work.hpp"
 
 namespace delf {
 namespace {
@@ -78,6 +79,13 @@ LegendreTransform::LegendreTransform(const LatticeSystem& system, const Window& 
       t_(system.times()->time(row)),
       size_(at(system.lattice().sites() * system.components())) {
   std::vector<int> number(size_, -1);
+  for (const auto& [column, end] : driven_ends(system))
+    for (int c = 0; c < system.components(); ++c)
+      if (system.component(c).role == Role::field && is_given(system, column, c, *end)) {
+        driven_.push_back(column * system.components() + c);
+        rates_.push_back(end->rate(system.component(c).field, t_, 0, 0));
+        number[driven_.back()] = -1 - static_cast<int>(driven_.size());
+      }
   for (const auto& family : system.families()) {
     const DensityOnTable* jets = family->made_of();
     if (jets && !jets->table.lower_side.empty()) add_part(*family, system, window, row, number);
@@ -161,9 +169,13 @@ void LegendreTransform::bind(const StencilFamily& family, int equation, const La
     for (int m = 0; m < family.size(); ++m) y[m] = window(row, place(m), component(m));
     family.jacobian_row(equation, {system.time_step(), k_, t_, system.lattice().position(i)}, y, J);
     for (int m = 0; m < family.size(); ++m)
-      if (system.component(component(m)).role != Role::multiplier && J[m] != 0)
-        bonds_.entries.push_back(
-            {place(equation) * C + component(equation), system.lattice().home(place(m)) * C + component(m), J[m]});
+      if (system.component(component(m)).role != Role::multiplier && J[m] != 0) {
+        const int own = place(equation) * C + component(equation),
+                  other = system.lattice().home(place(m)) * C + component(m);
+        bonds_.entries.push_back({own, other, J[m]});
+        if (const auto driven = std::ranges::find(driven_, other); driven != driven_.end())
+          bonds_.rates[own] -= J[m] * rates_[at(driven - driven_.begin())];
+      }
   }
 }
 
@@ -186,7 +198,7 @@ void LegendreTransform::bind_delayed(const MeshConstraint& mesh, const LatticeSy
 
 /// The jets of all cells at each point, with the density's gradient and value.
 template <class Visit>
-void LegendreTransform::each_point(const Part& part, double k, double t, const Vector& v, const Visit& visit) {
+void LegendreTransform::each_point(const Part& part, const Vector& v, const Visit& visit) const {
   const int d = part.density->components(), m = part.density->variables(), values = part.values;
   const int cells = part.cells(), padded = (cells + lanes - 1) / lanes * lanes;
   const ScratchRows jet(m + 1, padded), g(m + 1, padded);
@@ -198,14 +210,15 @@ void LegendreTransform::each_point(const Part& part, double k, double t, const V
       for (int a = 0; a < d; ++a) {
         for (const auto& [b, weight] : point[JetSlot::phi]) {
           jet[a][cell] += weight * part.y[from * values + b * d + a];
-          if (const int n = part.unknown[from * values + b * d + a]; n >= 0) jet[d + a][cell] += weight * v[n];
+          if (const int n = part.unknown[from * values + b * d + a]; n != -1)
+            jet[d + a][cell] += weight * (n >= 0 ? v[n] : rates_[at(-2 - n)]);
         }
         for (const auto& [b, weight] : point[JetSlot::phi_x])
-          jet[2 * d + a][cell] += weight / k * part.y[from * values + b * d + a];
+          jet[2 * d + a][cell] += weight / k_ * part.y[from * values + b * d + a];
       }
       jet[m][cell] = part.own[q].x[from];
     }
-    const JetBatch jets{padded, jet.data(), t, jet[m]};
+    const JetBatch jets{padded, jet.data(), t_, jet[m]};
     part.density->gradient(jets, g.data(), g[m]);
     visit(point, part.own[q].weight, jets, g.data(), g[m]);
   }
@@ -218,7 +231,7 @@ LegendreTransform::Vector LegendreTransform::momenta(const Vector& v, Sparse* ma
     const BatchDensity& density = *part.density;
     const int d = density.components(), m = density.variables();
     const auto unknown = [&](int cell, int vertex, int a) { return part.unknown[cell * part.values + vertex * d + a]; };
-    each_point(part, k_, t_, v,
+    each_point(part, v,
                [&](const TablePoint& point, const std::vector<double>& weights, const JetBatch& jets, double* const* g,
                    const double*) {
                  const ScratchRows H(mass ? m * m : 0, jets.count);
@@ -317,6 +330,36 @@ std::optional<std::vector<double>> LegendreTransform::velocities(std::span<const
   return v ? std::optional(on_row(*v)) : std::nullopt;
 }
 
+double LegendreTransform::given_at(const Vector& v) const {
+  double sum = 0;
+  if (driven_.empty()) return sum;
+  for (const Part& part : parts_) {
+    const int d = part.density->components();
+    each_point(part, v,
+               [&](const TablePoint& point, const std::vector<double>& weights, const JetBatch&, double* const* g,
+                   const double*) {
+                 for (int cell = 0; cell < part.cells(); ++cell)
+                   for (const auto& [b, weight] : point[JetSlot::phi])
+                     for (int a = 0; a < d; ++a)
+                       if (const int n = part.unknown[cell * part.values + b * d + a]; n <= -2)
+                         sum += k_ * weights[cell] * weight * g[d + a][cell] * rates_[at(-2 - n)];
+               });
+  }
+  return sum;
+}
+
+double LegendreTransform::work_in_row(std::span<const double> below) const {
+  Vector v = Vector::Zero(static_cast<Eigen::Index>(places_.size()));
+  if (!is_linear()) {
+    const auto found = velocities(on_unknowns(below));
+    if (!found) return std::numeric_limits<double>::quiet_NaN();
+    v = *found;
+  }
+  double work = given_at(v);
+  for (std::size_t n = 0; n < driven_.size(); ++n) work -= below[at(driven_[n])] * rates_[n];
+  return work;
+}
+
 EnergyMomentum LegendreTransform::energy(std::span<const double> given) const {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Vector p = on_unknowns(given), v = Vector::Zero(p.size());
@@ -327,10 +370,10 @@ EnergyMomentum LegendreTransform::energy(std::span<const double> given) const {
     v = *found;
     if (!bonds_.entries.empty()) p = momenta(v, nullptr);
   }
-  EnergyMomentum sum{p.dot(v), 0};
+  EnergyMomentum sum{p.dot(v) + given_at(v), 0};
   for (const Part& part : parts_) {
     const int d = part.density->components();
-    each_point(part, k_, t_, v,
+    each_point(part, v,
                [&](const TablePoint&, const std::vector<double>& weights, const JetBatch& jets, double* const* g,
                    const double* l) {
                  for (int cell = 0; cell < part.cells(); ++cell) {

@@ -19,7 +19,8 @@ namespace delf {
 ///
 /// Where values are bound, Σ ∂G/∂y v = 0 or the rate of the bond holds too: a constraint of the theory at the sites, or the
 /// one that a mesh follows. Momenta are then known up to forces: those of the bonds, −∂Gᵀ/∂y μ, or, for values that are
-/// slaved, any force on the value that each bond is the equation of. Rows are [i·C + c]; v is 0 at fixed walls.
+/// slaved, any force on the value that each bond is the equation of. Rows are [i·C + c]; v is 0 at fixed walls, and ḟ at driven
+/// ones, whose p·ḟ is part of H.
 class LegendreTransform {
  public:
   /// A row of a system: the families whose tables have a lower side, or the row of its mesh that moves.
@@ -36,6 +37,8 @@ class LegendreTransform {
   /// H and P of given momenta; not a number where they have no velocities. Where ℓ is linear in φ_t, H does not depend
   /// on v, and none is needed.
   EnergyMomentum energy(std::span<const double> p) const;
+  /// Σ (∂L/∂v − p) ḟ over the driven walls, of the momenta p of what lies below the row: what their forces do at it.
+  double work_in_row(std::span<const double> p) const;
 
  private:
   using Vector = Eigen::VectorXd;
@@ -45,8 +48,8 @@ class LegendreTransform {
   struct Part {
     const BatchDensity* density;
     std::span<const TablePoint> points;
-    int values;  ///< of a cell
-    std::vector<int> unknown = {};  ///< −1: held
+    int values;                     ///< of a cell
+    std::vector<int> unknown = {};  ///< −1: held; −2 − n: as rates_[n] says
     std::vector<double> y = {};
     /// Of each point, cell by cell.
     struct AtPoint {
@@ -56,7 +59,8 @@ class LegendreTransform {
     int cells() const { return static_cast<int>(own.front().weight.size()); }
   };
   struct Bonds {
-    std::vector<MatrixEntry> entries = {};  ///< rows and columns are places, the row that of the value it is the equation of
+    std::vector<MatrixEntry> entries =
+        {};  ///< rows and columns are places, the row that of the value it is the equation of
     bool slaved = false;
     std::map<int, double> rates = {};  ///< their right sides, by row; 0 where there is none
   };
@@ -72,12 +76,16 @@ class LegendreTransform {
   std::vector<double> on_row(const Vector&) const;
   bool is_linear() const;
   template <class Visit>
-  static void each_point(const Part&, double k, double t, const Vector& v, const Visit&);
+  void each_point(const Part&, const Vector& v, const Visit&) const;
+  /// Σ ∂L/∂v ḟ over the driven walls.
+  double given_at(const Vector& v) const;
 
   double k_ = 1, t_ = 0;
   std::size_t size_;  ///< of a row
   std::vector<Part> parts_;
   std::vector<int> places_;  ///< of the unknowns in a row
+  std::vector<int> driven_;  ///< places of the values that driven walls give
+  std::vector<double> rates_;
   Bonds bonds_;
 };
 

@@ -19,7 +19,9 @@
 
 #include "lattice/index.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "schemes/monodromy.hpp"
 #include "schemes/simulation.hpp"
+#include "schemes/start_values.hpp"
 #include "tools/commands.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/report/failure.hpp"
@@ -301,17 +303,20 @@ py::dict verify_scene(Settings settings, const std::string& name, const std::opt
 class HandEvolution {
  public:
   HandEvolution(const Settings& settings, int winding) : scene_(read_scene(settings)) {
+    scene_.problem.winding = winding;
     const py::gil_scoped_release others_may_go_on;
     simulation_ = std::make_unique<Simulation>(build(scene_, winding));
     delf::require_determined(scene_, *simulation_);
   }
 
-  /// Row 0 and its rate, of the fields or of all components.
+  /// Row 0 and its rate, of the fields or of all components; of a density that is linear in φ_t row 0 alone.
   void start(const Array& row0, const Array& velocity) {
     const std::vector<double> y = complete(row0), v = complete(velocity);
     const Scope scope(*this);
     ++moves_;
-    if (starts_with(StartRule::centred)) simulation_->start_centred(y, v);
+    if (may_start_from_values(scene_.problem) && simulation_->starting_rows() > 1)
+      start_from_values(*simulation_, y, monodromy_of(scene_.problem));
+    else if (starts_with(StartRule::centred)) simulation_->start_centred(y, v);
     else simulation_->start_legendre(y, v);
     started_ = true;
   }

@@ -160,7 +160,10 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
     outcome.conserved.push_back(
         {names.further.back() + ", " + own->entry->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   if (names.further.size() > 0 && names.further.back() == energy_less_work) {
-    work_.emplace(simulation.evolution().system(), end_fluxes(simulation.theory(), scene.problem));
+    // an energy of the method's own is that of a row
+    work_.emplace(simulation.evolution().system(), simulation.theory().shared_density(),
+                  end_fluxes(simulation.theory(), scene.problem),
+                  find_method(scene.problem.method).energy ? WorkUntil::newest_row : WorkUntil::midway);
     density_work_.emplace(simulation, scene.problem.lattice, initial.monodromy());
     outcome.conserved.push_back({energy_less_work, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   }
@@ -250,7 +253,8 @@ bool Stepping::record_start() {
 void Stepping::add_work() {
   const Stepper& stepper = simulation_.evolution().stepper();
   if (!work_) return;
-  if (stepper.newest() > 1) work_->add(stepper.window(3));
+  if (stepper.newest() > 1 || work_->by_elements())
+    work_->add(stepper.window(static_cast<int>(std::min<std::int64_t>(3, stepper.newest() + 1))));
   density_work_->see();
 }
 

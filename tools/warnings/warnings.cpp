@@ -157,8 +157,8 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   if (!normal.empty()) all.push_back(normal);
   for (Found& found : std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row),
                                          at_ends || !normal.empty() ? Found() : energy(outcome), band(),
-                                         at_ends ? Found() : error(outcome), at_ends,
-                                         without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
+                                         at_ends ? Found() : error(outcome), at_ends, without_solution(),
+                                         pinned(outcome, last_row), phase(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
@@ -230,10 +230,10 @@ Found Warnings::ends(const Outcome& outcome) const {
   if (!(ends.change > 0.1 * outcome.error_linf)) return {};
   return fmt::format("the exact solution {}, by {:.2g}, and the error is {:.2g}: it is not the scheme's alone; {}",
                      ends.words, ends.change, outcome.error_linf,
-                     scene_.problem.lattice.is_circle()
-                         ? "keep the pulse away from both ends of lattice.length"
+                     scene_.problem.lattice.is_circle() ? "keep the pulse away from both ends of lattice.length"
                      : key_of_driven_end(scene_.problem).empty()
-                         ? "give a solution that keeps its value there, or a longer lattice.length"
+                         ? "give boundary.left and boundary.right as formulas of t that it follows, a solution that "
+                           "keeps its value there, or a longer lattice.length"
                          : "give a solution that moves as the boundary keys say, or a longer lattice.length");
 }
 

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "jets/tables/pair_element.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "jets/tables/line_rule.hpp"
+#include "jets/tables/radau_element.hpp"
+#include "jets/tables/space_table.hpp"
 #include "jets/tables/splitting.hpp"
+#include "jets/tables/table_product.hpp"
+#include "jets/tables/time_element.hpp"
 #include "tests/catch.hpp"
 
 using namespace delf;
@@ -111,6 +119,33 @@ TEST_CASE(
     CHECK(std::abs(found(JetSlot::phi_t) - 3) < 1e-13);
     CHECK(std::abs(found(JetSlot::phi_x) - 5) < 1e-13);
   }
+}
+
+TEST_CASE("the table of time is found again in its product with one of space") {
+  const auto same = [](const StencilTable& time, const StencilTable& space) {
+    const StencilTable found = at_one_site(product(time, space));
+    REQUIRE(found.points.size() == time.points.size());
+    REQUIRE(found.tests.size() == time.tests.size());
+    CHECK(found.pattern.size() == time.pattern.size());
+    double gap = 0;
+    for (std::size_t q = 0; q < found.points.size(); ++q) {
+      CHECK(found.points[q].time == time.points[q].time);
+      gap = std::max(gap, std::abs(found.points[q].weight - time.points[q].weight));
+      for (const JetSlot slot : {JetSlot::phi, JetSlot::phi_t})
+        for (const auto& [of_found, of_time] :
+             {std::pair{&found.points[q], &time.points[q]}, {&found.test(q), &time.test(q)}}) {
+          std::vector<double> weights(at(time.pattern.size()), 0.0);
+          for (const auto& [vertex, weight] : (*of_found)[slot]) weights[at(vertex)] += weight;
+          for (const auto& [vertex, weight] : (*of_time)[slot]) weights[at(vertex)] -= weight;
+          for (const double weight : weights) gap = std::max(gap, std::abs(weight));
+        }
+    }
+    return gap;
+  };
+  const StencilTable gauss = time_element(lagrange_basis(lobatto_rule(3).points), gauss_rule(2), Continuity::shared);
+  for (const StencilTable& space : {spectral_space(2), linear_space(), pair_space(pair_weights(2)), point_space()})
+    for (const StencilTable& time : {gauss, radau_element(3), splitting_element(splitting_of_order(4))})
+      CHECK(same(time, space) < 1e-13);
 }
 
 TEST_CASE("kernels with their processors make a pendulum's steps of their effective order, and of order 2 without") {

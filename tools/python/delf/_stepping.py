@@ -115,7 +115,10 @@ class Evolution:
         return np.ascontiguousarray(array)
 
     def start(self, y0: Values, v0: Values = 0.0) -> "Evolution":
-        """Row 0 and φ_t there, as arrays, numbers or functions of x; row 1 is solved for. With a constraint: start_rows."""
+        """Row 0 and φ_t there, as arrays, numbers or functions of x; row 1 is solved for. With a constraint: start_rows.
+
+        Of a density that is linear in φ_t, such as Korteweg–de Vries, row 0 alone determines row 1, and v0 is not read.
+        """
         row, rate = self._values(y0), self._values(v0)
         if rate.shape != row.shape and np.ndim(v0 if not callable(v0) else 1) == 0:
             rate = np.full(row.shape, float(np.asarray(v0)))
