@@ -15,7 +15,7 @@ namespace {
 int vertices_at(const Stencils& all, Site site) {
   int count = 0;
   for (int family = 0; family < static_cast<int>(all.families().size()); ++family)
-    for (const Site offset : all.families()[family].vertices) count += all.exists(family, site - offset) ? 1 : 0;
+    for (int l = 0; l < all.families()[family].size(); ++l) all.with_vertex(family, l, site, [&](Site) { ++count; });
   return count;
 }
 
@@ -23,25 +23,22 @@ int vertices_at(const Stencils& all, Site site) {
 template <class Visit>
 void for_stencils_inside(const Stencils& all, const SiteSet& u, Visit visit) {
   std::vector<std::size_t> places;
-  for (int family = 0; family < static_cast<int>(all.families().size()); ++family) {
-    const StencilPattern& pattern = all.families()[family];
-    for (const Site site : u.sites()) {
-      const Site anchor = site - pattern.vertices.front();
-      if (!all.exists(family, anchor)) continue;
-      places.clear();
-      for (const Site offset : pattern.vertices) {
-        places.push_back(u.index(all.reduced(anchor + offset)));
-        if (places.back() == u.size()) break;
-      }
-      if (places.back() != u.size()) visit(family, anchor, places);
-    }
-  }
+  for (int family = 0; family < static_cast<int>(all.families().size()); ++family)
+    for (const Site site : u.sites())
+      all.with_vertex(family, 0, site, [&](Site anchor) {
+        places.clear();
+        for (int l = 0; l < all.families()[family].size(); ++l) {
+          places.push_back(u.index(all.vertex(family, anchor, l)));
+          if (places.back() == u.size()) return;
+        }
+        visit(family, anchor, places);
+      });
 }
 
 }  // namespace
 
-Region Region::from_sites(const Lattice& lattice, std::vector<StencilPattern> families, std::vector<Site> sites) {
-  Stencils all(lattice, std::move(families));
+Region Region::from_sites(Stencils all, std::vector<Site> sites, IsData is_data) {
+  const Lattice& lattice = all.lattice();
   for (Site& site : sites) {
     if (!all.in_lattice(site))
       throw BadInput("lattice.sites", "lattice.sites = " + std::to_string(lattice.sites()) +
@@ -50,7 +47,7 @@ Region Region::from_sites(const Lattice& lattice, std::vector<StencilPattern> fa
                                           "; keep it within the walls");
     site = all.reduced(site);
   }
-  return Region(std::move(all), SiteSet(std::move(sites)));
+  return Region(std::move(all), SiteSet(std::move(sites)), std::move(is_data));
 }
 
 Region Region::rectangle(const Lattice& lattice, std::vector<StencilPattern> families, Range time, Range space) {
@@ -60,14 +57,16 @@ Region Region::rectangle(const Lattice& lattice, std::vector<StencilPattern> fam
   return from_sites(lattice, std::move(families), std::move(sites));
 }
 
-Region::Region(Stencils all, SiteSet u) : all_(std::move(all)), u_(std::move(u)) {
+Region::Region(Stencils all, SiteSet u, IsData is_data)
+    : all_(std::move(all)), is_data_(std::move(is_data)), u_(std::move(u)) {
   // U holds every stencil that touches a site when as many vertices of stencils Δ ⊂ U meet there as of any stencils.
   std::vector<int> held(u_.size(), 0);
   for_stencils_inside(all_, u_, [&](int, Site, const std::vector<std::size_t>& places) {
     for (const std::size_t place : places) ++held[place];
   });
   std::vector<char> interior(u_.size()), closure(u_.size());
-  for (std::size_t n = 0; n < u_.size(); ++n) interior[n] = held[n] > 0 && held[n] == vertices_at(all_, sites()[n]);
+  for (std::size_t n = 0; n < u_.size(); ++n)
+    interior[n] = held[n] > 0 && held[n] == vertices_at(all_, sites()[n]) && !(is_data_ && is_data_(sites()[n]));
 
   // cl U: the stencils that touch int U all lie in U.
   for_stencils_inside(all_, u_, [&](int, Site, const std::vector<std::size_t>& places) {
@@ -90,39 +89,6 @@ void Region::visit_stencils(const std::function<void(int, Site, std::span<const 
   for_stencils_inside(all_, u_, [&](int family, Site anchor, const std::vector<std::size_t>& places) {
     visit(family, anchor, places);
   });
-}
-
-bool Region::contains(const Stencil& stencil) const {
-  return std::ranges::all_of(stencil.sites, [&](Site site) { return contains(site); });
-}
-
-std::vector<Stencil> Region::stencils() const {
-  std::vector<Stencil> found;
-  for_stencils_inside(all_, u_, [&](int family, Site anchor, const std::vector<std::size_t>&) {
-    found.push_back(*all_.find(family, anchor));
-  });
-  return found;
-}
-
-std::vector<Stencil> Region::boundary_stencils() const {
-  std::vector<Stencil> found;
-  for_stencils_inside(all_, u_, [&](int family, Site anchor, const std::vector<std::size_t>& places) {
-    if (std::ranges::any_of(places, [&](std::size_t place) { return boundary_.contains(sites()[place]); }))
-      found.push_back(*all_.find(family, anchor));
-  });
-  return found;
-}
-
-Region united(const Region& U, const Region& V) {
-  std::vector<Site> sites = U.sites();
-  sites.insert(sites.end(), V.sites().begin(), V.sites().end());
-  return Region::from_sites(U.lattice(), U.families(), std::move(sites));
-}
-
-Region without(const Region& U, const Region& V) {
-  std::vector<Site> sites;
-  std::ranges::set_difference(U.sites(), V.sites(), std::back_inserter(sites));
-  return Region::from_sites(U.lattice(), U.families(), std::move(sites));
 }
 
 }  // namespace delf

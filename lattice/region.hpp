@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lattice/lattice.hpp"
@@ -27,14 +28,23 @@ struct Range {
 ///
 class Region {
  public:
+  /// True for sites that are data and have no equation. They are in no int U, and those of cl U are in ∂U, where first
+  /// variations are as free as at its other sites. None: every site that stencils touch has equations.
+  using IsData = std::function<bool(Site)>;
+
   /// Sites in any order; on a circle they are reduced to 0 … N−1. Throws BadInput "lattice.sites" for a site outside an
   /// interval, and what Stencils throws.
-  static Region from_sites(const Lattice&, std::vector<StencilPattern> families, std::vector<Site> sites);
+  static Region from_sites(Stencils, std::vector<Site> sites, IsData = {});
+  static Region from_sites(const Lattice& lattice, std::vector<StencilPattern> families, std::vector<Site> sites) {
+    return from_sites(Stencils(lattice, std::move(families)), std::move(sites));
+  }
   /// All sites of the rows `time` and the columns `space`. On a circle the columns may run past N−1.
   static Region rectangle(const Lattice&, std::vector<StencilPattern> families, Range time, Range space);
 
   const Lattice& lattice() const { return all_.lattice(); }
-  const std::vector<StencilPattern>& families() const { return all_.families(); }
+  /// The stencils of the lattice, and its data.
+  const Stencils& all() const { return all_; }
+  const IsData& is_data() const { return is_data_; }
 
   // Each sorted by time, then space.
   const std::vector<Site>& sites() const { return u_.sites(); }
@@ -54,23 +64,12 @@ class Region {
   /// Calls visit(family, anchor, places of its vertices in sites()) for every stencil Δ ⊂ U, in a fixed order.
   void visit_stencils(const std::function<void(int, Site, std::span<const std::size_t>)>& visit) const;
 
-  bool contains(const Stencil&) const;
-  /// {Δ ⊂ U}: the stencils that the action (5.1) sums over.
-  std::vector<Stencil> stencils() const;
-  /// The Δ ⊂ U with a vertex in ∂U: the stencils that (5.3) to (5.7) sum over.
-  std::vector<Stencil> boundary_stencils() const;
-  /// Every stencil of the lattice that touches the site, in U or not.
-  std::vector<Stencil> touching(Site site) const { return all_.touching(all_.reduced(site)); }
-
  private:
-  Region(Stencils all, SiteSet u);
+  Region(Stencils all, SiteSet u, IsData);
 
   Stencils all_;
+  IsData is_data_;
   SiteSet u_, interior_, closure_, boundary_;
 };
-
-/// U ∪ V and U \ V, on the lattice and with the families of U.
-Region united(const Region& U, const Region& V);
-Region without(const Region& U, const Region& V);
 
 }  // namespace delf

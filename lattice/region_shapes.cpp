@@ -97,17 +97,43 @@ std::vector<Site> draw_centres(RegionKind kind, const Lattice& lattice, const Re
   return centres;
 }
 
-Region region_around(const Lattice& lattice, const std::vector<StencilPattern>& families,
-                     const std::vector<Site>& centres) {
+namespace {
+
+/// Calls use(site) for the vertices of all stencils that touch a site.
+template <class Use>
+void for_neighbours(const Stencils& all, Site site, const Use& use) {
+  for (int family = 0; family < static_cast<int>(all.families().size()); ++family)
+    for (int l = 0; l < all.families()[family].size(); ++l)
+      all.with_vertex(family, l, site, [&](Site anchor) {
+        for (int m = 0; m < all.families()[family].size(); ++m) use(all.vertex(family, anchor, m));
+      });
+}
+
+}  // namespace
+
+std::vector<Site> draw_connected(const Region& within, int count, std::mt19937_64& random) {
+  if (within.interior().empty()) return {};
+  std::vector<Site> drawn{within.interior()[random() % within.interior().size()]}, rim;
+  std::set<Site> seen(drawn.begin(), drawn.end());
+  const auto take_neighbours = [&](Site site) {
+    for_neighbours(within.all(), site, [&](Site other) {
+      if (within.in_interior(other) && seen.insert(other).second) rim.push_back(other);
+    });
+  };
+  take_neighbours(drawn[0]);
+  while (static_cast<int>(drawn.size()) < count && !rim.empty()) {
+    std::swap(rim[random() % rim.size()], rim.back());
+    drawn.push_back(rim.back());
+    rim.pop_back();
+    take_neighbours(drawn.back());
+  }
+  return drawn;
+}
+
+Region region_around(const Stencils& all, const std::vector<Site>& centres, Region::IsData is_data) {
   std::vector<Site> sites;
-  for (const Site centre : centres)
-    for (const StencilPattern& pattern : families)
-      for (const Site vertex : pattern.vertices) {
-        const Site anchor = centre - vertex;
-        if (anchor.node != 0 || !has_stencil(lattice, pattern, anchor)) continue;
-        for (const Site other : pattern.vertices) sites.push_back(anchor + other);
-      }
-  return Region::from_sites(lattice, families, std::move(sites));
+  for (const Site centre : centres) for_neighbours(all, centre, [&](Site site) { sites.push_back(site); });
+  return Region::from_sites(all, std::move(sites), std::move(is_data));
 }
 
 }  // namespace delf

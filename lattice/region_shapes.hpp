@@ -33,7 +33,15 @@ struct RegionFrame {
 /// sites, a wall on a circle, anything but a slab on a point.
 std::vector<Site> draw_centres(RegionKind, const Lattice&, const RegionFrame&, std::mt19937_64&);
 
+/// Up to `count` sites of the interior of a region, grown at random from one of them by stencils that hold both: on any
+/// space, where nothing need repeat.
+std::vector<Site> draw_connected(const Region& within, int count, std::mt19937_64&);
+
 /// The union of all stencils that touch one of the centres.
-Region region_around(const Lattice&, const std::vector<StencilPattern>& families, const std::vector<Site>& centres);
+Region region_around(const Stencils&, const std::vector<Site>& centres, Region::IsData = {});
+inline Region region_around(const Lattice& lattice, const std::vector<StencilPattern>& families,
+                            const std::vector<Site>& centres) {
+  return region_around(Stencils(lattice, families), centres);
+}
 
 }  // namespace delf

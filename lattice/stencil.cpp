@@ -31,8 +31,10 @@ bool has_stencil(const Lattice& lattice, const StencilPattern& pattern, Site anc
   return pattern.placed_at(anchor) && has_column(lattice, pattern, anchor.space);
 }
 
-Stencils::Stencils(const Lattice& lattice, std::vector<StencilPattern> families)
-    : lattice_(lattice), families_(std::move(families)) {
+Stencils::Stencils(const Lattice& lattice, std::vector<StencilPattern> families,
+                   std::vector<const ListedStencils*> lists)
+    : lattice_(lattice), families_(std::move(families)), lists_(std::move(lists)) {
+  lists_.resize(families_.size(), nullptr);
   if (families_.empty()) throw BadInput("lattice.stencil", "lattice.stencil: no stencil family is given; name one");
   for (const StencilPattern& pattern : families_) {
     if (pattern.size() == 0)
@@ -48,28 +50,35 @@ bool Stencils::in_lattice(Site site) const {
 }
 
 bool Stencils::exists(int family, Site anchor) const {
-  const StencilPattern& pattern = families_[family];
   // Stencils are anchored at the vertices of the lattice.
-  return anchor.node == 0 && has_stencil(lattice_, pattern, anchor);
+  if (anchor.node != 0) return false;
+  if (const ListedStencils* const listed = lists_[family]) return 0 <= anchor.space && anchor.space < listed->size();
+  return has_stencil(lattice_, families_[family], anchor);
+}
+
+Site Stencils::vertex(int family, Site anchor, int l) const {
+  const Site offset = families_[family].vertices[l];
+  if (const ListedStencils* const listed = lists_[family])
+    return {anchor.time + offset.time, listed->site(anchor.space, offset.space), offset.node};
+  return reduced(anchor + offset);
 }
 
 std::optional<Stencil> Stencils::find(int family, Site anchor) const {
   if (!exists(family, anchor)) return std::nullopt;
-  const StencilPattern& pattern = families_[family];
   Stencil stencil{family, reduced(anchor), {}};
-  stencil.sites.reserve(pattern.vertices.size());
-  for (const Site offset : pattern.vertices) stencil.sites.push_back(reduced(anchor + offset));
+  for (int l = 0; l < families_[family].size(); ++l) stencil.sites.push_back(vertex(family, anchor, l));
   return stencil;
 }
 
 std::vector<Stencil> Stencils::touching(Site site) const {
   std::vector<Stencil> found;
   for (int family = 0; family < static_cast<int>(families_.size()); ++family)
-    for (const Site offset : families_[family].vertices) {
-      auto stencil = find(family, site - offset);
-      // A stencil that is longer than its circle meets a site with more than one vertex.
-      if (stencil && std::ranges::find(found, *stencil) == found.end()) found.push_back(std::move(*stencil));
-    }
+    for (int l = 0; l < families_[family].size(); ++l)
+      with_vertex(family, l, site, [&](Site anchor) {
+        Stencil stencil = *find(family, anchor);
+        // A stencil that is longer than its circle meets a site with more than one vertex.
+        if (std::ranges::find(found, stencil) == found.end()) found.push_back(std::move(stencil));
+      });
   return found;
 }
 

@@ -10,8 +10,8 @@
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
-#include "schemes/complex/complex_noether.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/conserved.hpp"
 #include "schemes/system/constant_mass.hpp"
 
 namespace delf {

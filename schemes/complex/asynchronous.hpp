@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "schemes/complex/space_rows.hpp"
+#include "schemes/complex/cell_space.hpp"
 
 namespace delf {
 

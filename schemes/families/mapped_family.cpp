@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <tuple>
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/index.hpp"
@@ -32,16 +31,15 @@ void sum(std::span<const MappedFamily::Entry> terms, const Row& row, int count, 
 
 /// Every site that a map names, in order, and the values there.
 std::pair<StencilPattern, std::vector<VertexValue>> list_values(const MappedFamily::Map& map) {
-  std::vector<std::tuple<int, int, int>> all;  // time, space, component
+  std::vector<std::pair<Site, int>> all;  // and the component
   for (const auto* sums : {&map.reads, &map.tests})
     for (const MappedFamily::Sum& sum : *sums)
-      for (const MappedFamily::Part& p : sum) all.emplace_back(p.site.time, p.site.space, p.component);
+      for (const MappedFamily::Part& p : sum) all.emplace_back(p.site, p.component);
   std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   StencilPattern pattern;
   std::vector<VertexValue> values;
-  for (const auto& [time, space, component] : all) {
-    const Site site{time, space};
+  for (const auto& [site, component] : all) {
     if (pattern.vertices.empty() || pattern.vertices.back() != site) pattern.vertices.push_back(site);
     values.push_back({pattern.size() - 1, component});
   }

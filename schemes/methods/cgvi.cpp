@@ -52,7 +52,7 @@ void add_constraints(SchemeParts& parts, const FieldTheory& theory, const TimeEl
     MappedFamily::Map map;
     for (int i = 0; i < constraint->size(); ++i) {
       const int c = constraint->values()[i].component;
-      map.reads.push_back({{constraint->site(i), c < d ? node * d + c : first + c - d, 1}});
+      map.reads.push_back({{{.time = 0, .space = 0, .node = node}, c < d ? node * d + c : first + c - d, 1}});
     }
     parts.families.push_back(std::make_shared<MappedFamily>(constraint, map));
     const NodePosition at = element.nodes[node];

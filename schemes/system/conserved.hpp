@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,14 @@ namespace delf {
 /// field that ξ needs.
 void generator(const LatticeSystem&, const StencilFamily&, const LinearSymmetry&, std::span<const double> y,
                std::vector<double>& xi);
+
+/// ξ_a(φ) = Σ_b A_ab φ_b + b_a at the d values of one site.
+inline double generator_at(const LinearSymmetry& symmetry, std::size_t a, const double* phi) {
+  const std::size_t d = symmetry.shift.size();
+  double xi = symmetry.shift[a];
+  for (std::size_t b = 0; b < d; ++b) xi += symmetry.matrix[a * d + b] * phi[b];
+  return xi;
+}
 
 /// Noether's theorem on the slab between two cuts of spacetime (Marsden–Patrick–Shkoller (5.7)): for a symmetry of the
 /// Lagrangian with generator ξ, the sum over the stencils that reach across the cut below row `cut`

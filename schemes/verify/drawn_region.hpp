@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "lattice/region_shapes.hpp"
 #include "lattice/plan/solve_plan.hpp"
+#include "lattice/region_shapes.hpp"
 #include "schemes/system/lattice_system.hpp"
 
 namespace delf {
@@ -23,6 +23,7 @@ class RegionDrawer {
  public:
   RegionDrawer(const LatticeSystem&, Range solved);
 
+  const LatticeSystem& system() const { return system_; }
   /// Nothing if the lattice has no room for such a region.
   std::optional<Region> draw(const RegionRequest&, std::mt19937_64&) const;
 

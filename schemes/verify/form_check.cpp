@@ -12,13 +12,6 @@
 namespace delf {
 namespace {
 
-std::vector<RegionSystem::Pair> pairs_of(std::vector<RegionSystem::Values> variations) {
-  std::vector<RegionSystem::Pair> pairs;
-  for (std::size_t n = 0; n + 1 < variations.size(); n += 2)
-    pairs.push_back({std::move(variations[n]), std::move(variations[n + 1])});
-  return pairs;
-}
-
 /// "X": the slaved components at the vertices.
 std::string slaved_names(const LatticeSystem& system) {
   std::string names;

@@ -12,7 +12,7 @@
 namespace delf {
 namespace {
 
-double largest(const RegionSystem::Values& values) {
+double largest_entry(const RegionSystem::Values& values) {
   double most = 0;
   for (const double value : values) most = std::max(most, std::abs(value));
   return most;
@@ -41,13 +41,13 @@ void NearbyCheck::at(const std::string& kind, const RegionSystem& region, const 
   for (std::size_t p = 0; p < differences.size(); ++p) {
     if (balances[p].absolute == 0) return;  // the differences have not come to this region yet
     // ε, relative to a field of order one: what is curved is the potential, on that scale.
-    sizes.push_back(std::max(largest(differences[p].V), largest(differences[p].W)));
+    sizes.push_back(std::max(largest_entry(differences[p].V), largest_entry(differences[p].W)));
     q.push_back(balances[p].sum / balances[p].absolute);
     normaliser = balances[p].absolute, count = balances[p].count;
   }
   // The rest is the next power, and rounding: the values whose differences these are were rounded when they were
   // made.
-  const double delta = 8 * std::numeric_limits<double>::epsilon() * largest(F);
+  const double delta = 8 * std::numeric_limits<double>::epsilon() * largest_entry(F);
   double next_power = 10, rounding = 0;
   for (std::size_t p = 0; p < differences.size(); ++p) {
     next_power *= sizes[p];

@@ -17,14 +17,15 @@ namespace delf {
 
 NoetherCheck::NoetherCheck(const LatticeSystem& system, std::vector<LinearSymmetry> symmetries, double tolerance,
                            bool forced, std::uint64_t seed)
-    : system_(system), symmetries_(std::move(symmetries)), forced_(forced) {
+    : symmetries_(std::move(symmetries)), forced_(forced) {
   std::mt19937_64 random(seed);
+  const bool repeats = system.lattice().space() != Space::mesh;
   for (const LinearSymmetry& symmetry : symmetries_) {
-    invariant_.push_back(invariance(symmetry, random));
+    invariant_.push_back(invariance(system, symmetry, random));
     invariant_.back().tolerance = tolerance;
     up_to_divergence_.push_back(false);
-    if (!invariant_.back().passed()) {
-      Check cancels = divergence(symmetry, random);
+    if (!invariant_.back().passed() && repeats) {
+      Check cancels = divergence(system, symmetry, random);
       cancels.tolerance = tolerance;
       up_to_divergence_.back() = cancels.passed();
       if (cancels.passed()) invariant_.back() = cancels;
@@ -43,14 +44,14 @@ NoetherCheck::NoetherCheck(const LatticeSystem& system, std::vector<LinearSymmet
 namespace {
 
 /// Random values on a stencil, and the residual there. Where a density is not defined (a logarithm of φ, a root of
-/// 1 − φ_t² + φ_x²), it may be around 1, or where derivatives are small.
+/// 1 − φ_t² + φ_x²), it may be around 1, or where derivatives are small; weights of listed stencils' own may have h in them.
 void draw(const StencilFamily& family, const Cell& cell, std::mt19937_64& random, std::vector<double>& y,
           std::vector<double>& r) {
   std::uniform_real_distribution<double> uniform(-2, 2);
   std::vector<double> unit(y.size());
   for (double& value : unit) value = uniform(random);
   const double small = 0.1 * std::min(cell.time_step, cell.space_step);
-  for (const auto& [centre, size] : {std::pair{0.0, 1.0}, {1.0, 0.1}, {0.0, small}, {1.0, small}}) {
+  for (const auto& [centre, size] : {std::pair{0.0, 1.0}, {1.0, 0.1}, {0.0, small}, {1.0, small}, {1.0, 0.001}}) {
     for (std::size_t i = 0; i < y.size(); ++i) y[i] = centre + size * unit[i];
     family.residual(cell, y, r);
     if (std::ranges::all_of(r, [](double x) { return std::isfinite(x); })) return;
@@ -59,18 +60,19 @@ void draw(const StencilFamily& family, const Cell& cell, std::mt19937_64& random
 
 }  // namespace
 
-Check NoetherCheck::invariance(const LinearSymmetry& symmetry, std::mt19937_64& random) const {
+Check NoetherCheck::invariance(const LatticeSystem& system, const LinearSymmetry& symmetry, std::mt19937_64& random) {
   constexpr int jets = 20;
   Check check{.name = "symmetry of L, " + symmetry.name, .region = {}, .value = 0};
   std::vector<double> y, r, xi;
-  for (const auto& family : system_.families())
+  for (const auto& family : system.families())
     for (int n = 0; n < jets; ++n) {
       y.resize(family->size());
       r.resize(y.size());
-      const int site = static_cast<int>(random() % static_cast<std::uint64_t>(system_.lattice().sites()));
-      const Cell cell{system_.time_step(), system_.lattice().space_step(), 0, system_.lattice().position(site)};
+      const int anchor = static_cast<int>(random() % static_cast<std::uint64_t>(system.anchors(*family)));
+      const double x = family->listed() ? 0 : system.lattice().position(anchor);
+      const Cell cell{system.time_step(), system.lattice().space_step(), 0, x, anchor};
       draw(*family, cell, random, y, r);
-      generator(system_, *family, symmetry, y, xi);
+      generator(system, *family, symmetry, y, xi);
       Balance balance;
       for (std::size_t i = 0; i < r.size(); ++i) balance.add(r[i] * xi[i]);
       check.take(balance, fmt::format("{} random jets of each stencil family", jets));
@@ -83,15 +85,16 @@ Check NoetherCheck::invariance(const LinearSymmetry& symmetry, std::mt19937_64& 
 ///     Σ_Δ ∂δL_Δ/∂yᵐ = Σ_Δ Σ_i ∂rⁱ/∂yᵐ ξⁱ + rⁱ ∂ξⁱ/∂yᵐ = 0,
 ///
 /// over the stencils that meet at a site in the middle of the lattice, on brick walls one of either parity.
-Check NoetherCheck::divergence(const LinearSymmetry& symmetry, std::mt19937_64& random) const {
+Check NoetherCheck::divergence(const LatticeSystem& system, const LinearSymmetry& symmetry, std::mt19937_64& random) {
   constexpr int fields = 5;
   Check check{.name = "symmetry of L up to a divergence, " + symmetry.name, .region = {}, .value = 0};
   for (int sample = 0; sample < fields; ++sample)
     for (const double centre : {0.0, 1.0}) {  // where a density is not defined around 0, it may be around 1
       bool finite = true;
-      for (int c = 0; c < system_.components(); ++c)
+      for (int c = 0; c < system.components(); ++c)
         for (int row = 0; row < 2; ++row) {
-          const Balance balance = change_at({row, system_.lattice().sites() / 2, 0}, c, symmetry, centre, random);
+          const Balance balance =
+              change_at(system, {row, system.lattice().sites() / 2, 0}, c, symmetry, centre, random);
           finite = finite && std::isfinite(balance.absolute);
           if (finite) check.take(balance, "random fields");
         }
@@ -100,18 +103,18 @@ Check NoetherCheck::divergence(const LinearSymmetry& symmetry, std::mt19937_64& 
   return check;
 }
 
-Balance NoetherCheck::change_at(Site site, int component, const LinearSymmetry& symmetry, double centre,
-                                std::mt19937_64& random) const {
-  const Lattice& lattice = system_.lattice();
+Balance NoetherCheck::change_at(const LatticeSystem& system, Site site, int component, const LinearSymmetry& symmetry,
+                                double centre, std::mt19937_64& random) {
+  const Lattice& lattice = system.lattice();
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const double size = centre == 0 ? 1 : 0.1 * std::min(system_.time_step(), lattice.space_step());
+  const double size = centre == 0 ? 1 : 0.1 * std::min(system.time_step(), lattice.space_step());
   std::map<std::tuple<int, int, int>, double> field;
   Balance balance;
-  for (const auto& family : system_.families())
+  for (const auto& family : system.families())
     for (int m = 0; m < family->size(); ++m) {
       if (family->values()[m].component != component) continue;
       const Site vertex = family->site(m), anchor{site.time - vertex.time, lattice.home(site.space - vertex.space), 0};
-      if (!system_.has_stencil(*family, anchor.time, anchor.space)) continue;
+      if (!system.has_stencil(*family, anchor.time, anchor.space)) continue;
       const std::size_t n = family->size(), at = delf::at(m);
       std::vector<double> y(n), r(n), J(n * n), xi(n), moved(n);
       for (std::size_t i = 0; i < n; ++i) {
@@ -121,25 +124,25 @@ Balance NoetherCheck::change_at(Site site, int component, const LinearSymmetry& 
         if (fresh) value->second = centre + size * uniform(random);
         y[i] = value->second;
       }
-      const Cell cell{system_.time_step(), lattice.space_step(), 0, lattice.position(anchor.space)};
+      const Cell cell{system.time_step(), lattice.space_step(), 0, lattice.position(anchor.space)};
       family->residual(cell, y, r);
       family->jacobian(cell, y, J);
-      generator(system_, *family, symmetry, y, xi);
+      generator(system, *family, symmetry, y, xi);
       y[at] += 1;
-      generator(system_, *family, symmetry, y, moved);
+      generator(system, *family, symmetry, y, moved);
       for (std::size_t i = 0; i < n; ++i) balance.add(J[i * n + at] * xi[i]), balance.add(r[i] * (moved[i] - xi[i]));
     }
   return balance;
 }
 
-void NoetherCheck::at(const RegionSystem& region, const RegionSystem::Values& y) {
+void NoetherCheck::at(const RegionSystem& region, const RegionSystem::Values& y, const std::string& where) {
   for (std::size_t n = 0; n < symmetries_.size(); ++n) {
     if (!invariant_[n].passed() && !forced_) continue;
     Check& check = sums_[n];
     Balance balance = region.noether(y, symmetries_[n], up_to_divergence_[n]);
     // The rounding of given values is allowed for: |sum| ≤ tolerance · absolute + rounding.
     if (balance.relative() > check.tolerance) balance.absolute += region.rounding(y, symmetries_[n]) / check.tolerance;
-    if (!check.take(balance, in_words(region.region(), region.origin(), region.stencils()))) continue;
+    if (!check.take(balance, where)) continue;
     check.failure = fmt::format("What flows into {} is not what flows out: {:.2g} of the momenta of {} is left. {}",
                                 check.region, check.value, symmetries_[n].name,
                                 invariant_[n].passed()
@@ -152,8 +155,8 @@ void NoetherCheck::at(const Window& rows, const RegionDrawer& drawer, const std:
                       std::mt19937_64& random) {
   for (const RegionRequest& request : regions)
     if (const auto region = drawer.draw(request, random)) {
-      const RegionSystem here(system_, *region, rows.first_row, rows.monodromy);
-      at(here, here.restricted(rows));
+      const RegionSystem here(drawer.system(), *region, rows.first_row, rows.monodromy);
+      at(here, here.restricted(rows), in_words(*region, here.origin(), here.stencils()));
     }
 }
 

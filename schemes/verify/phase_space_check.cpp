@@ -13,7 +13,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-double largest(const std::vector<double>& values) {
+double largest_coordinate(const std::vector<double>& values) {
   double most = 0;
   for (const double value : values) most = std::max(most, std::abs(value));
   return most;
@@ -49,7 +49,7 @@ void PhaseSpaceCheck::at(std::int64_t row, const CanonicalRow& z, const std::vec
 // The differences at a row are exact, and those at the next follow by the derivative of one step, up to their size.
 void PhaseSpaceCheck::look_at_form(std::int64_t row, const CanonicalRow& z, const std::vector<CanonicalRow>& nearby) {
   const std::size_t pairs = nearby.size() / 2;
-  const double delta = 4 * rounding_ * std::max(largest(z.q), largest(z.p));
+  const double delta = 4 * rounding_ * std::max(largest_coordinate(z.q), largest_coordinate(z.p));
   std::vector<PairForm> now(pairs);
   for (std::size_t n = 0; n < pairs; ++n) {
     const CanonicalRow &A = nearby[2 * n], &B = nearby[2 * n + 1];

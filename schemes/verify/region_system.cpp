@@ -22,6 +22,12 @@ std::vector<StencilPattern> patterns_of(const LatticeSystem& system) {
   return patterns;
 }
 
+Stencils stencils_of(const LatticeSystem& system) {
+  std::vector<const ListedStencils*> lists;
+  for (const auto& family : system.families()) lists.push_back(family->listed());
+  return {system.lattice(), patterns_of(system), std::move(lists)};
+}
+
 /// Reads the multiplier of a constraint: one that is a momentum ties the ends of an element.
 bool has_multiplier(const LatticeSystem& system, const StencilFamily& family) {
   return std::ranges::any_of(family.values(), [&](const VertexValue& value) {
@@ -30,31 +36,39 @@ bool has_multiplier(const LatticeSystem& system, const StencilFamily& family) {
   });
 }
 
+std::vector<RegionSystem::Pair> pairs_of(std::vector<RegionSystem::Values> variations) {
+  std::vector<RegionSystem::Pair> pairs;
+  for (std::size_t n = 0; n + 1 < variations.size(); n += 2)
+    pairs.push_back({std::move(variations[n]), std::move(variations[n + 1])});
+  return pairs;
+}
+
 RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int64_t origin, double monodromy,
                            SlavedValues slaved)
     : system_(system),
-      region_(std::move(region)),
+      region_(std::make_shared<const Region>(std::move(region))),
       origin_(origin),
       components_(system.components()),
       by_forms_(is_variational(system) || slaved == SlavedValues::known),
-      kind_(region_.sites().size(), outside) {
-  for (const Site site : region_.interior()) kind_[region_.place(site)] = inside;
-  for (const Site site : region_.boundary()) kind_[region_.place(site)] = boundary;
+      kind_(region_->sites().size(), outside) {
+  for (const Site site : region_->interior()) kind_[region_->place(site)] = inside;
+  for (const Site site : region_->boundary()) kind_[region_->place(site)] = boundary;
   solved_.assign(nodes(), false);
   held_.assign(nodes(), false);
   const std::size_t C = components_;
+  const bool walls_vary = region_->is_data() != nullptr;
   Assembly::Parts parts{.equations = {},
                         .parity = static_cast<int>(origin & 1),
                         .monodromy = monodromy,
                         .stencils = std::vector<Assembly::Anchor>(),
-                        .place = [region = region_](Site site) { return static_cast<int>(region.place(site)); }};
-  region_.visit_stencils([&](int f, Site anchor, std::span<const std::size_t> places) {
+                        .place = [region = region_](Site site) { return static_cast<int>(region->place(site)); }};
+  region_->visit_stencils([&](int f, Site anchor, std::span<const std::size_t> places) {
     const Lattice& lattice = system_.lattice();
     parts.stencils->push_back({f, {anchor.time, lattice.home(anchor.space)}});
     for (const VertexValue& value : system_.families()[f]->values()) {
       const std::size_t place = places[value.vertex];
       const std::size_t node = place * C + delf::at(value.component);
-      held_[node] = system_.is_held(region_.sites()[place].space, value.component) ||
+      held_[node] = (!walls_vary && system_.is_held(region_->sites()[place].space, value.component)) ||
                     (slaved == SlavedValues::known && system_.component(value.component).role == Role::slaved);
       solved_[node] = kind_[place] == inside && !held_[node];
     }
@@ -66,7 +80,7 @@ RegionSystem::RegionSystem(const LatticeSystem& system, Region region, std::int6
 
 Node RegionSystem::node(std::size_t n) const {
   const std::size_t C = components_;
-  return {region_.sites()[n / C], static_cast<int>(n % C)};
+  return {region_->sites()[n / C], static_cast<int>(n % C)};
 }
 
 RegionSystem::Values RegionSystem::restricted(const Window& window) const {
@@ -91,11 +105,22 @@ void RegionSystem::each_jacobian(const Values& y, bool at_boundary, const Visit&
 }
 
 std::vector<Balance> RegionSystem::residual(const Values& y) const {
-  std::vector<double> E, absolute;
-  assembly_->residual(row(y), origin_, E, &absolute);
-  std::vector<Balance> result;
-  for (std::size_t n = 0; n < E.size(); ++n) result.push_back({E[n], absolute[n]});
+  std::vector<Balance> E(nodes()), result;
+  assembly_->each_residual(row(y), origin_, [&](const Assembly::Local& at) {
+    for (std::size_t i = 0; i < at.places.size(); ++i)
+      if (at.family.is_varied(static_cast<int>(i))) E[at.places[i]].add(at.derivatives[i]);
+  });
+  for (const std::size_t n : equations_) result.push_back(E[n]);
   return result;
+}
+
+std::vector<double> RegionSystem::sizes(const Values& y) const {
+  std::vector<double> size(nodes(), 0.0);
+  each_jacobian(y, false, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
+    for (std::size_t i = 0; i < read.size(); ++i)
+      for (std::size_t m = 0; m < read.size(); ++m) size[read[i]] += std::abs(J[i * read.size() + m] * at.y[m]);
+  });
+  return size;
 }
 
 std::vector<Balance> RegionSystem::linearised(const Values& y, const Values& V) const {
@@ -245,7 +270,7 @@ std::optional<RegionSystem::OneWay> RegionSystem::least_mutual(const Values& y) 
 }
 
 std::vector<double> RegionSystem::boundary_terms(const Values& y, const Pair& pair) const {
-  std::vector<double> terms(region_.sites().size(), 0.0), v, w;
+  std::vector<double> terms(region_->sites().size(), 0.0), v, w;
   const std::size_t C = components_;
   each_jacobian(y, true, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
     gather(at, pair.V, v);

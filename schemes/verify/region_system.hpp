@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <random>
 #include <span>
@@ -19,8 +20,10 @@ namespace delf {
 /// not vary and have no equations.
 enum class SlavedValues { solved, known };
 
-/// The patterns of a system's families, as regions want them.
+/// The patterns of a system's families.
 std::vector<StencilPattern> patterns_of(const LatticeSystem&);
+/// The stencils of a system, as regions count them; those that are listed are the families'.
+Stencils stencils_of(const LatticeSystem&);
 
 /// A family's stencils have the multiplier of a constraint.
 bool has_multiplier(const LatticeSystem&, const StencilFamily&);
@@ -36,9 +39,12 @@ class RegionSystem {
   RegionSystem(const LatticeSystem&, Region, std::int64_t origin = 0, double monodromy = 0,
                SlavedValues = SlavedValues::solved);
 
-  const Region& region() const { return region_; }
+  const LatticeSystem& system() const { return system_; }
+  const Region& region() const { return *region_; }
   std::int64_t origin() const { return origin_; }
-  std::size_t nodes() const { return region_.sites().size() * at(components_); }
+  /// Counts the rows of U from another origin, of the same parity: a window that has moved on.
+  void move_to(std::int64_t origin) { origin_ = origin; }
+  std::size_t nodes() const { return region().sites().size() * at(components_); }
   std::int64_t stencils() const { return assembly_->stencils(); }
   /// The node of that number; rows count from the origin.
   Node node(std::size_t n) const;
@@ -50,9 +56,11 @@ class RegionSystem {
 
   /// E_b = Σ_{l: Δˡ = b} rˡ at the nodes of equations()                                                     (5.2)
   std::vector<Balance> residual(const Values& y) const;
+  /// Σ_a |∂E_b/∂y_a y_a| at every node b of U: what the terms of E_b have cancelled within stencils too.
+  std::vector<double> sizes(const Values& y) const;
 
   /// Random solutions of the linearised equations at equations(), by an orthogonal projection onto the null space of
-  /// ∂E_b/∂y_a, and zero at fixed walls: no evolution is needed to have them, only the region.
+  /// ∂E_b/∂y_a, and zero at fixed walls, unless these are data of the region: no evolution is needed to have them.
   std::vector<Values> first_variations(const Values& y, int count, std::mt19937_64&) const;
   /// The failure of V to solve them: Σ_a ∂E_b/∂y_a V_a at each node of equations().
   std::vector<Balance> linearised(const Values& y, const Values& V) const;
@@ -119,7 +127,7 @@ class RegionSystem {
   void gather(const Assembly::Local&, const Values& from, std::vector<double>& to) const;
 
   const LatticeSystem& system_;
-  Region region_;
+  std::shared_ptr<const Region> region_;
   std::int64_t origin_;
   int components_;
   bool by_forms_;           ///< Ω is that of residuals; or else the sum is that of equations
@@ -130,5 +138,8 @@ class RegionSystem {
   std::optional<Assembly>
       assembly_;  ///< of equations_, in their order, and all stencils in U; rows count from the origin
 };
+
+/// The first two variations, the next two, …
+std::vector<RegionSystem::Pair> pairs_of(std::vector<RegionSystem::Values> variations);
 
 }  // namespace delf

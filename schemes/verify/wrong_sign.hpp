@@ -8,6 +8,7 @@
 
 #include "lattice/index.hpp"
 #include "schemes/families/stencil_family.hpp"
+#include "schemes/system/lattice_system.hpp"
 
 namespace delf {
 
@@ -21,6 +22,7 @@ class WrongSign final : public StencilFamily {
         right_(std::move(right)),
         value_(at(value)) {
     placed_ = right_->is_placed();
+    if (right_->listed() != nullptr) listed_ = {right_, right_->listed()};
   }
 
   void residual(const Cell& cell, std::span<const double> y, std::span<double> r) const override {
@@ -39,5 +41,9 @@ class WrongSign final : public StencilFamily {
   std::shared_ptr<const StencilFamily> right_;
   std::size_t value_;
 };
+
+/// A system with such a fault in its first family; in every family of several values where stencils do not repeat, so that
+/// every region has one.
+std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem&);
 
 }  // namespace delf

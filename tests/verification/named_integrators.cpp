@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -234,6 +235,16 @@ TEST_CASE("a spherical pendulum on a constraint is the method RATTLE with the ta
     CHECK(distance(y.q, body.q()) < 1e-12);
     CHECK(distance(y.p, body.p()) < 1e-12);
   }
+}
+
+TEST_CASE("a component lies at one node of the cell for all stencils: regions take those of a node as a site") {
+  const Simulation simulation(problem_of("spherical-pendulum", 0.1, "lobatto3"));
+  const LatticeSystem& system = simulation.evolution().system();
+  std::vector<std::set<int>> nodes(system.all_components().size());
+  for (const auto& family : system.families())
+    for (int i = 0; i < family->size(); ++i) nodes[family->values()[i].component].insert(family->site(i).node);
+  for (const std::set<int>& of_component : nodes) CHECK(of_component.size() == 1);
+  CHECK(std::ranges::any_of(nodes, [](const auto& of_component) { return *of_component.begin() > 0; }));
 }
 
 TEST_CASE("constrained Lobatto elements keep constraint, momenta and their order") {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lattice/index.hpp"
-#include "schemes/complex/space_rows.hpp"
+#include "schemes/complex/cell_space.hpp"
 #include "schemes/complex/stencil_list.hpp"
 #include "schemes/complex/tiling.hpp"
 #include "schemes/theories/field_theory.hpp"

@@ -5,14 +5,20 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+#include <utility>
 
+#include "lattice/complex/complex_plan.hpp"
+#include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/complex/asynchronous.hpp"
-#include "schemes/complex/first_and_last_step.hpp"
-#include "schemes/complex/slab_complex.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/mesh_energy.hpp"
 #include "schemes/theories/mirrored_in_time.hpp"
+#include "schemes/verify/first_and_last_step.hpp"
+#include "schemes/verify/fitted_multipliers.hpp"
+#include "tools/complex/checked_rows.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_checks.hpp"
 #include "tools/complex/mesh_stepping.hpp"
@@ -28,7 +34,7 @@
 namespace delf {
 namespace {
 
-/// Which rows are checked, or a static field: windows of consecutive rows are complexes of their own.
+/// The rows that are checked, in windows of consecutive ones, or a static field.
 class MeshVerification {
  public:
   MeshVerification(const ComplexScene& scene, const Values& values)
@@ -48,7 +54,6 @@ class MeshVerification {
     if (fields) look_at_file(*fields);
     else if (scene_.is_one_problem()) look_at_field();
     else if (scene_.time == MeshTime::cells) look_at_cells();
-    else if (scene_.has_method()) look_at_slabs();
     else look_at_rows();
     verdict_.seconds = seconds_since(begin);
     checks_.add_to(verdict_);
@@ -87,30 +92,37 @@ class MeshVerification {
     verdict_.subject = "rows of " + name;
     const int frames = file.frames();
     if (scene_.is_one_problem()) {
-      const StaticField field(scene_);
       const std::vector<double> row = file.row(frames - 1);
       const std::string where = fmt::format("frame {}", frames - 1);
-      if (scene_.stencils) return checks_.look_at(field.system(), row, where);
-      return look_at_rows_of(SpaceRows(*scene_.space), row, multipliers_of(file, name, frames - 1, 1), where);
+      if (scene_.stencils) return checks_.look_at(checked(StaticField(scene_).system(), row), where);
+      return look_at_mesh(row, multipliers_of(file, name, frames - 1, 1), where);
     }
     if (frames < 3) throw refuse(fmt::format("has {} frames, and an equation takes three; record more rows", frames));
+    const LatticeSystem system = system_of_rows(scene_);
+    WindowsOnMesh windows(system);
     for (int first = 0, last = 0; last < frames - 1 && !Interrupt::asked(); first = last - 1) {
       last = std::min(first + window, frames) - 1;
       first = std::min(first, last - 2);
-      std::vector<double> rows, times;
+      std::vector<std::vector<double>> rows;
+      std::vector<double> times;
       for (int f = first; f <= last; ++f) {
-        const std::vector<double> row = file.row(f);
-        rows.insert(rows.end(), row.begin(), row.end());
+        rows.push_back(row_of(system, file.row(f)));
         const auto time = file.time(f);
         if (!time) throw refuse("has no /time; record it");
         if (!times.empty() && !(*time > times.back()))
           throw refuse(fmt::format("frame {} is not later than the one before it; sort the frames", f));
         times.push_back(*time);
       }
+      system.times()->set(times);
       // Frame f + 1 has those of row f, which they were found with; the last row of a window has none.
-      std::vector<double> multipliers = multipliers_of(file, name, first + 1, last - first);
-      if (!multipliers.empty()) multipliers.resize(multipliers.size() + scene_.space->mesh.points.size(), 0.0);
-      look_at_rows_of(SpaceRows(*scene_.space, times), rows, multipliers, fmt::format("frames {} to {}", first, last));
+      const std::vector<double> multipliers = multipliers_of(file, name, first + 1, last - first);
+      Window held = system.window(0, std::move(rows), 0);
+      if (scene_.theory->constraint() && multipliers.empty()) fit_multipliers(system, held);
+      const std::size_t N = scene_.space->mesh.points.size();
+      for (std::size_t n = N; n < multipliers.size(); ++n)  // of A_i ½(h_below + h_above) λ_i G
+        held.rows[n / N][(n % N + 1) * at(held.components) - 1] =
+            multipliers[n] * scene_.space->masses[n % N] * 0.5 * (times[n / N + 1] - times[n / N - 1]);
+      look_at_window(windows, held, fmt::format("frames {} to {}", first, last));
     }
     if (Interrupt::asked()) verdict_.status = "interrupted";
   }
@@ -135,14 +147,20 @@ class MeshVerification {
     return all;
   }
 
-  /// Without multipliers they are those that fit the rows best.
-  void look_at_rows_of(const SpaceRows& window_rows, std::span<const double> rows, std::span<const double> multipliers,
-                       const std::string& where) {
-    checks_.look_at_constraint(rows, where);
-    checks_.look_at(
-        window_rows.system(),
-        multipliers.empty() ? window_rows.with_multipliers(rows) : window_rows.with_multipliers(rows, multipliers),
-        where);
+  void look_at_window(WindowsOnMesh& windows, const Window& rows, const std::string& where) {
+    std::vector<double> fields;
+    for (const std::vector<double>& row : rows.rows)
+      std::ranges::copy(fields_of(windows.system(), row), std::back_inserter(fields));
+    checks_.look_at_constraint(fields, where);
+    checks_.look_at(windows(rows), where);
+  }
+  /// A static field; without multipliers they are those that fit it best.
+  void look_at_mesh(std::span<const double> fields, std::span<const double> multipliers, const std::string& where) {
+    const LatticeSystem system = system_of_field(scene_);
+    Window row = system.window(0, {row_of(system, fields, multipliers)}, 0);
+    if (scene_.theory->constraint() && multipliers.empty()) fit_multipliers(system, row);
+    WindowsOnMesh windows(system);
+    look_at_window(windows, row, where);
   }
 
   /// Rows of one mesh say nothing of another.
@@ -167,8 +185,8 @@ class MeshVerification {
       verdict_.status = "interrupted";
       return;
     }
-    if (scene_.theory->constraint()) checks_.look_at_constraint(field.values(), "all of space");
-    checks_.look_at(field.system(), field.unknowns_and_data(), "all of space");
+    if (scene_.stencils) checks_.look_at(checked(field.system(), field.unknowns_and_data()), "all of space");
+    else look_at_mesh(field.values(), field.multipliers(), "all of space");
   }
 
   // Windows of some updates a site, with the order that the planner finds for them.
@@ -181,7 +199,7 @@ class MeshVerification {
       evolution.open_window();
       evolution.update(6 * scene_.space->mesh.cells());
       const auto made = evolution.window();
-      checks_.look_at(made.system, made.values,
+      checks_.look_at(checked(made.system, made.values),
                       fmt::format("updates {} to {}", evolution.updates() - 6 * scene_.space->mesh.cells() + 1,
                                   evolution.updates()));
       // Each time of a site is determined by its time before, and by nothing that comes later.
@@ -196,82 +214,72 @@ class MeshVerification {
     if (Interrupt::asked()) verdict_.status = "interrupted";
   }
 
-  /// Slabs of another method than the usual one, with the nodes inside them.
-  void look_at_slabs() {
-    constexpr int rows = 4;
-    Simulation simulation(scene_.problem_on_mesh());
-    start(scene_, simulation);
-    const LatticeSystem& system = simulation.evolution().system();
-    for (int moment = 0; moment < moments_ && !Interrupt::asked(); ++moment) {
-      const std::int64_t next = std::max<std::int64_t>(rows - 1, scene_.scene.steps * (moment + 1) / moments_);
-      while (simulation.newest() < next && !Interrupt::asked()) simulation.step();
-      if (Interrupt::asked()) break;
-      const SlabComplex slabs = slab_complex(system, simulation.evolution().stepper().window(rows));
-      if (scene_.theory->constraint()) {
-        std::vector<double> row(scene_.space->fields_of_row());
-        simulation.copy_row(0, row);
-        checks_.look_at_constraint(row, fmt::format("row {}", next));
-      }
-      checks_.look_at(slabs.system, slabs.values, fmt::format("rows {} to {}", next - rows + 1, next));
-    }
-    verdict_.left_out.push_back("time reversal: not for methods of lattices on a mesh");
-    if (Interrupt::asked()) verdict_.status = "interrupted";
-  }
-
+  /// Rows of any method, with the nodes inside their slabs.
   void look_at_rows() {
+    const bool usual = !scene_.has_method();
+    const int count = usual ? window : 4;
     Simulation simulation(scene_.problem_on_mesh());
-    const RowTimes& times_of_rows = *simulation.evolution().system().times();
+    const LatticeSystem& system = simulation.evolution().system();
+    if (!is_variational(system))
+      throw BadInput(
+          "scheme.method",
+          "scheme.method: on a mesh delf verify checks methods that have an action: composition or cgvi; use one of "
+          "these");
+    RowTimes& times = *system.times();
+    times.keep_all();
     const MeshEnergy energy_of(scene_.theory->shared_density(), *scene_.space);
     start(scene_, simulation);
-    const std::int64_t steps = std::max<std::int64_t>(rows_of_run(), window);
-    std::vector<double> rows, times, before(scene_.values()), row(before.size());
-    const auto keep = [&](double t) {
-      if (times.size() == window)
-        rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(row.size())), times.erase(times.begin());
-      rows.insert(rows.end(), row.begin(), row.end());
-      times.push_back(t);
+    const std::int64_t steps = std::max<std::int64_t>(rows_of_run(), count);
+    WindowsOnMesh windows(system);
+    const auto newest_two = [&] { return simulation.evolution().stepper().window(2); };
+    const auto energy = [&](const Window& two) {
+      return energy_of.between(fields_of(system, two.rows[0]), fields_of(system, two.rows[1]),
+                               times.step(two.first_row), times.time(two.last_row()));
     };
-    const auto energy = [&] {
-      const std::int64_t newest = simulation.newest();
-      return energy_of.between(before, row, times_of_rows.step(newest - 1), times_of_rows.time(newest));
-    };
-    row = before, keep(0);
-    simulation.copy_row(0, row), keep(times_of_rows.time(1));
-    lengths_ = {times_of_rows.step(0)};
-    const bool own_steps = !times_of_rows.uniform();
-    const double first_energy = energy();
+    Window held = system.window(0, newest_two().rows, 0);
+    lengths_ = {times.step(0)};
+    const bool own_steps = usual && !times.uniform();
+    const double first_energy = own_steps ? energy(held) : 0;
     int moment = 0;
     while (simulation.newest() < steps && !Interrupt::asked()) {
       simulation.step();
-      before = row, simulation.copy_row(0, row);
-      lengths_.push_back(times_of_rows.step(simulation.newest() - 1));
-      if (own_steps) measure_energy(energy(), first_energy, simulation.newest());
-      const std::int64_t next =
-          std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_);  // the last row of the next window
-      if (simulation.newest() > next - window) keep(times_of_rows.time(simulation.newest()));
-      if (simulation.newest() < next) continue;
-      look_at_rows_of(SpaceRows(*scene_.space, times), rows, {},
-                      fmt::format("rows {} to {}", simulation.newest() - window + 1, simulation.newest()));
-      if (own_steps && !scene_.theory->constraint())
-        look_at_first_step(times, rows, fmt::format("rows from {}", simulation.newest() - window + 1));
-      while (moment < moments_ &&
-             std::max<std::int64_t>(window - 1, steps * (moment + 1) / moments_) <= simulation.newest())
-        ++moment;
+      const std::int64_t newest = simulation.newest();
+      lengths_.push_back(times.step(newest - 1));
+      if (own_steps) measure_energy(energy(newest_two()), first_energy, newest);
+      const auto last_of = [&](int m) { return std::max<std::int64_t>(count - 1, steps * (m + 1) / moments_); };
+      if (newest > last_of(moment) - count + 1) keep(newest_two(), count, held);
+      if (newest < last_of(moment)) continue;
+      look_at_window(windows, held, fmt::format("rows {} to {}", held.first_row, newest));
+      if (own_steps && !scene_.theory->constraint()) look_at_first_step(system, held);
+      while (moment < moments_ && last_of(moment) <= newest) ++moment;
     }
     if (energy_) verdict_.measured.push_back(*energy_);
+    if (!usual) verdict_.left_out.push_back("time reversal: not for methods of lattices on a mesh");
     if (Interrupt::asked()) verdict_.status = "interrupted";
-    else reverse(simulation);
+    else if (usual) reverse(simulation);
   }
 
-  /// Rows of steps of their own, and one more as long as the first of them: Marsden–Patrick–Shkoller (6.6).
-  void look_at_first_step(std::vector<double> times, std::vector<double> rows, const std::string& where) {
-    times.back() = times[times.size() - 2] + (times[1] - times[0]);
-    const SpaceRows same(*scene_.space, times);
-    ComplexSolver(same.system()).solve(rows);
+  /// The newest `count` rows; nodes and multipliers of a row are known with the next one.
+  static void keep(Window two, int count, Window& held) {
+    if (held.last_row() == two.first_row) {
+      held.rows.back() = std::move(two.rows[0]);
+    } else {
+      held.rows = {std::move(two.rows[0])};
+      held.first_row = two.first_row;
+    }
+    held.rows.push_back(std::move(two.rows[1]));
+    if (std::ssize(held.rows) > count) held.rows.erase(held.rows.begin()), ++held.first_row;
+  }
+
+  /// Rows of steps of their own, the last of them as long as the first: Marsden–Patrick–Shkoller (6.6).
+  void look_at_first_step(const LatticeSystem& system, const Window& rows) {
+    std::vector<double> times;
+    for (std::int64_t row = rows.first_row; row < rows.last_row(); ++row) times.push_back(system.times()->time(row));
+    times.push_back(times.back() + (times[1] - times[0]));
+    const std::string where = fmt::format("rows from {}", rows.first_row);
     for (int v = 0; v < checks_.variations(); ++v)
       if (first_step_.take(
-              form_of_first_step(*scene_.space, times, rows, checks_.random(), checks_.fault() == "variation"),
-              where) &&
+              form_of_first_step(system, times, rows.rows, checks_.random(), checks_.fault() == "variation"), where) &&
           !first_step_.passed())
         first_step_.failure = "the 2-form of the last two rows is not that of the first two";
   }

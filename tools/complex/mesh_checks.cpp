@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 
 #include "jets/expressions/expression.hpp"
-#include "schemes/complex/complex_form.hpp"
+#include "lattice/index.hpp"
+#include "lattice/region_shapes.hpp"
 #include "schemes/verify/equation_check.hpp"
+#include "schemes/verify/wrong_sign.hpp"
 #include "tools/verify/verify_request.hpp"
 
 namespace delf {
@@ -17,7 +21,9 @@ MeshChecks::MeshChecks(const ComplexScene& scene, const Values& values)
     : scene_(scene),
       variations_(static_cast<int>(values.integer("verify.variations"))),
       fault_(values.choice("verify.fault")),
-      random_(scene.scene.initial.seed) {
+      random_(scene.scene.initial.seed),
+      symmetries_(symmetries(values)),
+      forced_(values.toggle("verify.force")) {
   const double tolerance = values.real("verify.tolerance");
   equations_ = {
       .name = "field equations", .region = {}, .tolerance = std::max(tolerance, 10 * scene.scene.problem.tolerance)};
@@ -28,7 +34,6 @@ MeshChecks::MeshChecks(const ComplexScene& scene, const Values& values)
                       .region = {},
                       .tolerance = tolerance});
   constraint_ = {.name = "constraint", .region = {}, .tolerance = equations_.tolerance};
-  noether_.emplace(symmetries(values), equations_.tolerance, values.toggle("verify.force"), fault_ == "sign");
 }
 
 void MeshChecks::add_to(Verdict& verdict) const {
@@ -38,7 +43,7 @@ void MeshChecks::add_to(Verdict& verdict) const {
   if (constraint_.samples > 0) verdict.checks.push_back(constraint_);
   for (const Check& check : forms_) verdict.checks.push_back(check);
   verdict.checks.push_back(local_);
-  const std::vector<Check> noether = noether_->checks();
+  const std::vector<Check> noether = noether_ ? noether_->checks() : std::vector<Check>();
   verdict.checks.insert(verdict.checks.end(), noether.begin(), noether.end());
   verdict.left_out.insert(verdict.left_out.end(), left_out_.begin(), left_out_.end());
   if (noether.empty())
@@ -57,62 +62,75 @@ std::vector<LinearSymmetry> MeshChecks::symmetries(const Values& values) {
   return all;
 }
 
-void MeshChecks::look_at(const ComplexSystem& system, std::vector<double> y, const std::string& where) {
-  const Complex& complex = system.complex();
-  const Touching touching(complex);
-  if (fault_ == "field") {
-    const std::vector<int> one = draw_centres(complex, touching, 1, random_);
-    y[one.front() * system.components()] += 1e-3;
-  }
-  look_at_equations(system, y, where);
-  stencils_ += complex.stencils();
+void MeshChecks::look_at(CheckedRows given, const std::string& where) {
+  const RegionSystem& everywhere = *given.everywhere;
+  const Region& whole = everywhere.region();
+  if (fault_ == "field") break_a_value(everywhere, given.rows);
+  look_at_equations(given, where);
+  stencils_ += everywhere.stencils();
+  const auto wrong = fault_ == "sign" ? with_wrong_sign(everywhere.system()) : nullptr;
+  const LatticeSystem& system = wrong ? *wrong : everywhere.system();
+  if (!noether_) noether_.emplace(system, symmetries_, equations_.tolerance, forced_, scene_.scene.initial.seed);
   for (std::size_t n = 0; n < sizes.size(); ++n) {
-    const ComplexForm form(system,
-                           ComplexRegion::around(complex, touching, draw_centres(complex, touching, sizes[n], random_)),
-                           y, fault_ == "sign");
-    auto V = form.first_variations(2 * variations_, random_);
+    const std::vector<Site> centres = draw_connected(whole, sizes[n], random_);
+    const RegionSystem here(system, region_around(whole.all(), centres, whole.is_data()), given.rows.first_row);
+    const RegionSystem::Values y = here.restricted(given.rows);
+    auto pairs = pairs_of(here.first_variations(y, 2 * variations_, random_));
     if (fault_ == "variation")
-      if (const auto node = form.coupling_node()) V[0][*node] += 1e-2;
+      if (const auto node = here.coupling_node(y)) pairs[0].V[*node] += 1e-2;
     const std::string region =
-        fmt::format("{} sites, {} stencils, {}", form.region().sites().size(), form.region().stencils().size(), where);
-    for (std::size_t v = 0; v + 1 < V.size(); v += 2) {
-      if (forms_[n].take(form.form_formula(V[v], V[v + 1]), region) && !forms_[n].passed())
-        forms_[n].failure = form.linearised(V[v]) > 1e-9 ? "V does not solve the linearised equations"
-                                                         : "the stencils' equations are no derivatives of one action";
-      if (local_.take(form.local_identity(V[v], V[v + 1]), region) && !local_.passed())
+        fmt::format("{} sites, {} stencils, {}", here.region().sites().size(), here.stencils(), where);
+    const std::vector<Balance> formula = here.form_formula(y, pairs);
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      if (forms_[n].take(formula[p], region) && !forms_[n].passed()) {
+        const std::vector<Balance> left = here.linearised(y, pairs[p].V);
+        forms_[n].failure = std::ranges::any_of(left, [](const Balance& E) { return E.relative() > 1e-9; })
+                                ? "V does not solve the linearised equations"
+                                : "the stencils' equations are no derivatives of one action";
+      }
+      if (local_.take(here.local_identity(y, pairs[p]).balance, region) && !local_.passed())
         local_.failure = "∂²L/∂y∂y of a stencil is not symmetric";
     }
-    noether_->look_at(system, form.region(), y, region, random_);
-    points_.push_back({fmt::format("{} sites", sizes[n]), static_cast<std::int64_t>(form.region().stencils().size()),
-                       forms_[n].value, true});
+    noether_->at(here, y, region);
+    points_.push_back({fmt::format("{} sites", sizes[n]), here.stencils(), forms_[n].value, true});
   }
 }
 
+void MeshChecks::break_a_value(const RegionSystem& everywhere, Window& rows) {
+  std::vector<Node> fields;
+  for (const std::size_t n : everywhere.equations())
+    if (const Node node = everywhere.node(n); node.component < std::ssize(scene_.fields)) fields.push_back(node);
+  const Node one = fields[random_() % fields.size()];
+  rows.rows[at(one.site.time)][at(one.site.space * rows.components + one.component)] += 1e-3;
+}
+
 // Relative to the largest terms of the window: a vacuum has no scale of its own.
-void MeshChecks::look_at_equations(const ComplexSystem& system, std::span<const double> y, const std::string& where) {
-  std::vector<Balance> E = system.residual(y);
-  const std::size_t d = system.components();
-  // The terms are differences of rows, which the last digits of the values change: |E| ≤ ε Σ |∂E/∂y y| is none.
-  const std::vector<double> sizes = system.sizes(y);
-  const double rounding = ValueError().of(*std::ranges::max_element(sizes));
-  if (scene_.time == MeshTime::cells) {
-    // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients.
-    for (std::size_t n = 0; n < E.size(); ++n) E[n].absolute = sizes[n];
-  }
-  const double scale = std::max(scale_of_equations(system, E, y), rounding / equations_.tolerance);
+void MeshChecks::look_at_equations(const CheckedRows& given, const std::string& where) {
+  const RegionSystem& everywhere = *given.everywhere;
+  const RegionSystem::Values y = everywhere.restricted(given.rows);
+  const std::vector<Balance> E = everywhere.residual(y);
+  const std::vector<double> sizes = everywhere.sizes(y);
+  double size = 0, terms = 0;
+  for (const double own : sizes) size = larger_or_nan(own, size);
+  for (const Balance& one : E) terms = larger_or_nan(one.absolute, terms);
+  // The terms are differences of rows, which the last digits of the values change: |E| ≤ ε Σ |∂E/∂y y| is none. Where all
+  // terms are rounding, as the differences of a constant field, they are no scale.
+  constexpr double few = 8 * std::numeric_limits<double>::epsilon();
+  const double scale = terms <= few * size ? size : std::max(terms, ValueError().of(size) / equations_.tolerance);
   for (std::size_t n = 0; n < E.size(); ++n) {
-    const auto site = static_cast<int>(n / d);
-    if (!system.complex().has_equation(site)) continue;
-    const double own = scene_.time == MeshTime::cells ? E[n].absolute : scale;
+    const std::size_t node = everywhere.equations()[n];
+    // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients.
+    const double own = scene_.time == MeshTime::cells ? sizes[node] : scale;
     if (equations_.take({E[n].sum, own, E[n].count}, where))
-      equations_.region = fmt::format("{}, {}", name_of(system, site), where), worst_site_ = equations_.region;
+      equations_.region = fmt::format("{}, {}", name_of(given, everywhere.node(node).site), where),
+      worst_site_ = equations_.region;
   }
   if (!equations_.passed()) equations_.failure = "the values around " + worst_site_ + " are not those of a solution";
 }
 
-// Where every value is a site of its own, their numbers say nothing.
-std::string MeshChecks::name_of(const ComplexSystem& system, int site) const {
-  const std::string name = system.complex().name(site);
+// Where there are multipliers, the numbers of sites say nothing.
+std::string MeshChecks::name_of(const CheckedRows& given, Site site) const {
+  const std::string name = given.name(site);
   return scene_.theory->constraint() ? "the point" + name.substr(name.find(" at ")) : name;
 }
 

@@ -7,21 +7,22 @@
 #include <string>
 #include <vector>
 
-#include "schemes/complex/complex_noether.hpp"
-#include "schemes/complex/complex_system.hpp"
+#include "jets/symmetry.hpp"
+#include "schemes/verify/noether_check.hpp"
+#include "tools/complex/checked_rows.hpp"
 #include "tools/complex/complex_scene.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/verify/verdict.hpp"
 
 namespace delf {
 
-/// What is checked of any complex of a scene, and of the values on it: the equations, the form formula and Noether's theorem
-/// on connected sets of sites drawn at random, the local identity of the forms, the constraint.
+/// The checks of any rows of a scene on a mesh, and of any complex: the equations, the form formula and Noether's theorem on
+/// connected sets of sites drawn at random, the local identity of the forms, the constraint.
 class MeshChecks {
  public:
   MeshChecks(const ComplexScene&, const Values&);
 
-  void look_at(const ComplexSystem&, std::vector<double> y, const std::string& where);
+  void look_at(CheckedRows, const std::string& where);
   /// Of row after row of fields.
   void look_at_constraint(std::span<const double> fields, const std::string& where);
   /// Into a verdict, in the order of reports, and what was left out.
@@ -35,8 +36,9 @@ class MeshChecks {
   static constexpr std::array<int, 5> sizes{1, 3, 9, 27, 60};  ///< sites of a set
 
   std::vector<LinearSymmetry> symmetries(const Values&);
-  void look_at_equations(const ComplexSystem&, std::span<const double> y, const std::string& where);
-  std::string name_of(const ComplexSystem&, int site) const;
+  void break_a_value(const RegionSystem&, Window&);
+  void look_at_equations(const CheckedRows&, const std::string& where);
+  std::string name_of(const CheckedRows&, Site) const;
 
   const ComplexScene& scene_;
   int variations_;
@@ -45,7 +47,9 @@ class MeshChecks {
   Check equations_, constraint_, local_;
   std::vector<Check> forms_;
   std::vector<std::string> left_out_;
-  std::optional<ComplexNoether> noether_;
+  std::vector<LinearSymmetry> symmetries_;
+  bool forced_;
+  std::optional<NoetherCheck> noether_;
   std::vector<RegionPoint> points_;
   std::int64_t stencils_ = 0;
 };

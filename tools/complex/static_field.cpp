@@ -15,7 +15,7 @@ namespace {
 
 ComplexSystem system_of(const ComplexScene& scene) {
   if (scene.stencils) return spacetime_complex(*scene.stencils, scene.theory->shared_density());
-  return SpaceRows(*scene.space).system();
+  return mesh_complex(*scene.space);
 }
 
 double largest_magnitude(const std::vector<double>& values) {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "schemes/complex/complex_noether.hpp"
 #include "schemes/driven_ends.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/conserved.hpp"
 #include "schemes/system/momenta.hpp"
 #include "schemes/theories/angles.hpp"
 #include "schemes/without_value.hpp"

@@ -45,28 +45,6 @@ std::vector<std::string> field_names(const LatticeSystem& system) {
   return names;
 }
 
-// The first value whose residual depends on anything: the vertex of a broken element is in no term.
-int first_with_terms(const StencilFamily& family, const LatticeSystem& system) {
-  std::vector<double> y, J;
-  for (int i = 0; i < family.size(); ++i) y.push_back(1 + 0.1 * i);
-  J.resize(y.size());
-  for (int i = 0; i < family.size(); ++i) {
-    family.jacobian_row(i, {system.time_step(), system.lattice().space_step(), 0, 0}, y, J);
-    if (std::ranges::any_of(J, [](double entry) { return entry != 0; })) return i;
-  }
-  return 0;
-}
-
-// The families with the first derivative of the first one's Lagrangian of the wrong sign.
-std::unique_ptr<LatticeSystem> with_wrong_sign(const LatticeSystem& right) {
-  std::vector<std::shared_ptr<const StencilFamily>> families(right.families().begin(), right.families().end());
-  families[0] = std::make_shared<WrongSign>(families[0], first_with_terms(*families[0], right));
-  auto wrong =
-      std::make_unique<LatticeSystem>(right.lattice(), std::move(families), right.time_step(), right.all_components());
-  wrong->share_times(right);
-  return wrong;
-}
-
 }  // namespace
 
 std::vector<LinearSymmetry> requested_symmetries(const Scene& scene, const VerifyRequest& request,

@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "jets/expressions/expression.hpp"
-#include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/complex_forms.hpp"
 #include "tests/schemes/complex/mesh_rows.hpp"
 
 namespace {
 
 using namespace delf;
-using delf::testing::MeshRows;
+using namespace delf::testing;
 
 /// An interval with cells that shrink towards its right end, and steps of no common multiple.
 struct Case {
@@ -52,11 +52,8 @@ TEST_CASE("asynchronous steps are a complex with the same order, and the form fo
   CHECK(distance < 1e-12);
 
   std::mt19937_64 random(1);
-  const Touching touching(complex);
   for (const int centres : {1, 10, 40}) {
-    const ComplexForm form(window.system,
-                           ComplexRegion::around(complex, touching, draw_centres(complex, touching, centres, random)),
-                           window.values);
+    const ComplexForms form(window.system, drawn_region(window.system, centres, random), window.values);
     auto V = form.first_variations(2, random);
     CHECK(form.form_formula(V[0], V[1]).relative() < 1e-13);
     V[0][*form.coupling_node()] += 0.1;

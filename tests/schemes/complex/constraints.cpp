@@ -5,18 +5,21 @@
 
 #include "lattice/error.hpp"
 #include "schemes/complex/asynchronous.hpp"
-#include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
-#include "schemes/complex/space_rows.hpp"
+#include "schemes/families/mesh_families.hpp"
+#include "schemes/methods/mesh_rows.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/wave_map.hpp"
+#include "schemes/verify/fitted_multipliers.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/complex_forms.hpp"
 #include "tests/schemes/complex/mesh_rows.hpp"
+#include "tests/schemes/complex/space_complex.hpp"
 
 namespace {
 
 using namespace delf;
-using delf::testing::MeshRows;
+using namespace delf::testing;
 
 CellSpace sphere_valued(Mesh mesh, bool fixed) {
   const TheoryOf<WaveMap> theory{WaveMap{}};
@@ -119,6 +122,33 @@ TEST_CASE("on a sphere a wave map keeps constraint, energy and momenta, with equ
   band(0.04, false);
 }
 
+/// The usual method's rows at these times.
+LatticeSystem system_of_rows(const CellSpace& space, std::span<const double> times) {
+  auto families = mesh_families(time_of_mesh_rows(), space.density, space);
+  families.push_back(space.constraint);
+  std::vector<Component> components = fields(space.fields());
+  components.push_back({"lambda", Role::multiplier, {}});
+  LatticeSystem system(Lattice::on(std::make_shared<MeshSpace>(space)), std::move(families), times[1] - times[0],
+                       std::move(components));
+  system.times()->set({times.begin(), times.end()});
+  return system;
+}
+
+/// The largest |E|, relative to its terms, of rows with the multipliers that they have, or with those that fit them.
+double residual_of(const LatticeSystem& system, const std::vector<std::vector<double>>& rows, bool fitted) {
+  Window window = system.window(0, rows, 0);
+  if (fitted) fit_multipliers(system, window);
+  double sum = 0, terms = 0;
+  std::vector<LatticeSystem::Value> E;
+  for (std::int64_t row = 1; row < window.last_row(); ++row) {
+    system.equations(window, row, E);
+    for (std::size_t n = 0; n < E.size(); ++n)
+      if (!system.lattice().is_fixed(static_cast<int>(n / 4)))
+        sum = std::max(sum, std::abs(E[n].sum)), terms = std::max(terms, E[n].absolute);
+  }
+  return sum / terms;
+}
+
 TEST_CASE("the form formula holds on the constrained rows of a mesh, multipliers among the fields, and can fail") {
   const std::array times{0.0, 0.05, 0.12, 0.15, 0.19};
   for (const bool fixed : {false, true}) {
@@ -132,23 +162,25 @@ TEST_CASE("the form formula holds on the constrained rows of a mesh, multipliers
                         y.begin() + static_cast<std::ptrdiff_t>(j * space.values_of_row()));
     ComplexSolver(system).solve(y);
     // the multipliers can be found from the fields alone
-    std::vector<double> fields;
+    const LatticeSystem of_rows = system_of_rows(space, times);
+    std::vector<std::vector<double>> fields(times.size());
     for (std::size_t j = 0; j < times.size(); ++j) {
       const auto row = std::span(y).subspan(j * space.values_of_row(), space.fields_of_row());
       CHECK(space.largest_constraint(row) < 1e-13);
-      fields.insert(fields.end(), row.begin(), row.end());
+      for (std::size_t n = 0; n < row.size(); ++n) {
+        fields[j].push_back(row[n]);
+        if (n % 3 == 2) fields[j].push_back(0.5);  // any multiplier
+      }
     }
-    CHECK(largest_residual(system, rows.with_multipliers(fields)) < 1e-13);
-    fields[fields.size() / 2] += 1e-4;
-    CHECK(largest_residual(system, rows.with_multipliers(fields)) > 1e-6);
+    CHECK(residual_of(of_rows, fields, false) > 1e-3);
+    CHECK(residual_of(of_rows, fields, true) < 1e-13);
+    const std::size_t inside = std::ranges::find(space.fixed, 0) - space.fixed.begin();
+    fields[2][4 * inside] += 1e-4;
+    CHECK(residual_of(of_rows, fields, true) > 1e-6);
 
     std::mt19937_64 random(2);
-    const Touching touching(system.complex());
     for (const int centres : {1, 7, 40}) {
-      const ComplexForm form(
-          system,
-          ComplexRegion::around(system.complex(), touching, draw_centres(system.complex(), touching, centres, random)),
-          y);
+      const ComplexForms form(system, drawn_region(system, centres, random), y);
       auto V = form.first_variations(2, random);
       CHECK(form.linearised(V[0]) < 1e-12);
       CHECK(form.form_formula(V[0], V[1]).relative() < 1e-13);
@@ -169,13 +201,13 @@ TEST_CASE("a harmonic map of a square into the sphere converges with order 2") {
   };
   const auto error = [&](int n) {
     const CellSpace space = sphere_valued(rectangle_mesh(0.8, 0.8, n, n, false), true);
-    const SpaceRows rows(space);
+    const ComplexSystem system = mesh_complex(space);
     const std::vector<double> exact = at_points(space.mesh, u, 0);
-    std::vector<double> y(rows.system().nodes(), 0.0);
+    std::vector<double> y(system.nodes(), 0.0);
     for (std::size_t i = 0; i < exact.size(); ++i) y[i] = space.fixed[i / 3] ? exact[i] : i % 3 == 2;  // the north pole
-    const ComplexSolver solver(rows.system());
+    const ComplexSolver solver(system);
     CHECK(solver.solve(y).iterations < 12);
-    CHECK(largest_residual(rows.system(), y) < 1e-13);
+    CHECK(largest_residual(system, y) < 1e-13);
     const auto fields = std::span(y).first(exact.size());
     CHECK(space.largest_constraint(fields) < 1e-13);
     return distance(space, fields, exact);
@@ -186,13 +218,13 @@ TEST_CASE("a harmonic map of a square into the sphere converges with order 2") {
 
 TEST_CASE("a constant map into the sphere has the residual 0, though all its terms are rounding, and another has not") {
   const CellSpace space = sphere_valued(rectangle_mesh(1, 1, 6, 6, false), true);
-  const SpaceRows rows(space);
-  std::vector<double> y(rows.system().nodes(), 0.0);
+  const ComplexSystem system = mesh_complex(space);
+  std::vector<double> y(system.nodes(), 0.0);
   for (std::size_t i = 0; i < 3 * space.mesh.points.size(); ++i) y[i] = std::array{0.36, 0.48, 0.8}[i % 3];
-  ComplexSolver(rows.system()).solve(y);
-  CHECK(largest_residual(rows.system(), y) < 1e-14);
+  ComplexSolver(system).solve(y);
+  CHECK(largest_residual(system, y) < 1e-14);
   for (std::size_t i = 0; i < y.size(); ++i) y[i] = 1e-9 * std::sin(static_cast<double>(i));
-  CHECK(largest_residual(rows.system(), y) > 0.1);
+  CHECK(largest_residual(system, y) > 0.1);
 }
 
 TEST_CASE("cells refuse a constraint") {

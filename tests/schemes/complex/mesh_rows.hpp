@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "jets/symmetry.hpp"
-#include "schemes/complex/space_rows.hpp"
+#include "schemes/complex/cell_space.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/mesh_energy.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "jets/tables/named_tables.hpp"
-#include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/complex_forms.hpp"
 #include "tests/schemes/complex/lattice_complex.hpp"
 #include "tests/schemes/complex/lattice_values.hpp"
 #include "tests/schemes/support.hpp"
@@ -53,10 +53,7 @@ TEST_CASE("a regular lattice given as a complex has the same plan, rows and form
       }
 
       std::mt19937_64 seed(1);
-      const Touching touching(system.complex());
-      const ComplexForm form(
-          system, ComplexRegion::around(system.complex(), touching, draw_centres(system.complex(), touching, 9, seed)),
-          y);
+      const ComplexForms form(system, drawn_region(system, 9, seed), y);
       const auto V = form.first_variations(2, seed);
       CHECK(form.form_formula(V[0], V[1]).relative() < 1e-13);
     }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/complex/space_rows.hpp"
-
 #include <array>
 #include <cmath>
 #include <functional>
@@ -11,20 +9,22 @@
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
 #include "schemes/complex/asynchronous.hpp"
-#include "schemes/complex/complex_form.hpp"
+#include "schemes/complex/cell_space.hpp"
 #include "schemes/complex/complex_solver.hpp"
-#include "schemes/complex/first_and_last_step.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/theories/sine_gordon.hpp"
+#include "schemes/verify/first_and_last_step.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/complex_forms.hpp"
 #include "tests/schemes/complex/mesh_rows.hpp"
+#include "tests/schemes/complex/space_complex.hpp"
 
 namespace {
 
 using namespace delf;
-using delf::testing::MeshRows;
+using namespace delf::testing;
 
 std::shared_ptr<const BatchDensity> wave() { return expression("0.5*phi_t^2 - 0.5*phi_x^2"); }
 std::shared_ptr<const BatchDensity> sine_gordon() { return expression("0.5*phi_t^2 - 0.5*phi_x^2 + cosm1(phi)"); }
@@ -95,12 +95,8 @@ TEST_CASE("the form formula holds on irregular spaces with steps of their own, a
       CHECK(solver.is_direct());
       CHECK(solver.plan().levels == 4);
       solver.solve(y);
-      const Touching touching(system.complex());
       for (const int centres : {1, 7, 25}) {
-        const ComplexForm form(system,
-                               ComplexRegion::around(system.complex(), touching,
-                                                     draw_centres(system.complex(), touching, centres, random)),
-                               y);
+        const ComplexForms form(system, drawn_region(system, centres, random), y);
         auto V = form.first_variations(2, random);
         CHECK(form.linearised(V[0]) < 1e-12);
         CHECK(form.form_formula(V[0], V[1]).relative() < 1e-13);
@@ -236,11 +232,11 @@ TEST_CASE("one 2-form is kept if the last step is as long as the first, and only
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
     const auto change = [&](std::span<const double> times, bool fault) {
-      const SpaceRows rows(space, times);
-      std::vector<double> y(rows.system().nodes());
-      for (double& value : y) value = normal(random);
-      ComplexSolver(rows.system()).solve(y);
-      return form_of_first_step(space, times, y, random, fault);
+      const MeshRows rows(space, 1);
+      std::vector<std::vector<double>> y(times.size(), std::vector<double>(space.fields_of_row()));
+      for (std::vector<double>& row : y)
+        for (double& value : row) value = normal(random);
+      return form_of_first_step(rows.evolution().system(), times, y, random, fault);
     };
     CHECK(change(same, false).count > 0);
     CHECK(change(same, false).relative() < 1e-13);
@@ -295,14 +291,11 @@ TEST_CASE("densities that read t and x converge with order 2 on meshes, and have
   const std::array times{0.0, 0.05, 0.12, 0.15, 0.19};
   const CellSpace space(rectangle_mesh(2, 1, 4, 3, false), expression(moving), false);
   const SpaceRows rows(space, times);
-  const Complex& complex = rows.system().complex();
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
   std::vector<double> y(rows.system().nodes());
   for (double& value : y) value = 0.3 * normal(random);
-  const Touching touching(complex);
-  const ComplexForm form(rows.system(),
-                         ComplexRegion::around(complex, touching, draw_centres(complex, touching, 7, random)), y);
+  const ComplexForms form(rows.system(), drawn_region(rows.system(), 7, random), y);
   const auto V = form.first_variations(2, random);
   CHECK(form.linearised(V[0]) < 1e-12);
   CHECK(form.form_formula(V[0], V[1]).relative() < 1e-13);

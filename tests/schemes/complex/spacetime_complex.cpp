@@ -7,12 +7,12 @@
 
 #include "jets/tables/named_tables.hpp"
 #include "lattice/index.hpp"
-#include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
-#include "schemes/complex/space_rows.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/complex_forms.hpp"
 #include "tests/schemes/complex/lattice_complex.hpp"
 #include "tests/schemes/complex/lattice_values.hpp"
+#include "tests/schemes/complex/space_complex.hpp"
 #include "tests/schemes/complex/stencil_lists.hpp"
 #include "tests/schemes/support.hpp"
 
@@ -174,12 +174,10 @@ TEST_CASE(
   for (const auto& s : list.sites) y.push_back(3 * std::exp(-std::pow(s.position[1] - 1.5, 2)));
   ComplexSolver(system).solve(y);
   CHECK(largest_residual(system, y) < 1e-12);
-  const Touching touching(system.complex());
   std::mt19937_64 seed(1);
-  const auto region =
-      ComplexRegion::around(system.complex(), touching, draw_centres(system.complex(), touching, 8, seed));
+  const Region region = drawn_region(system, 8, seed);
   for (const bool wrong : {false, true}) {
-    const ComplexForm form(system, region, y, wrong);
+    const ComplexForms form(system, region, y, wrong);
     const auto V = form.first_variations(2, seed);
     const double defect = form.form_formula(V[0], V[1]).relative();
     CHECK((wrong ? defect > 1e-6 : defect < 1e-13));
@@ -225,12 +223,10 @@ TEST_CASE("mixed shapes with jets from their coordinates are exact on affine fie
     std::vector<double> y;
     for (const auto& s : list.sites) y.push_back(3 * std::exp(-std::pow(s.position[1] - 1.5, 2)));
     ComplexSolver(system).solve(y);
-    const Touching touching(system.complex());
     std::mt19937_64 seed(1);
-    const auto region =
-        ComplexRegion::around(system.complex(), touching, draw_centres(system.complex(), touching, 12, seed));
+    const Region region = drawn_region(system, 12, seed);
     for (const bool wrong : {false, true}) {
-      const ComplexForm form(system, region, y, wrong);
+      const ComplexForms form(system, region, y, wrong);
       const auto V = form.first_variations(2, seed);
       const double defect = form.form_formula(V[0], V[1]).relative();
       CHECK((wrong ? defect > 1e-6 : defect < 1e-13));

@@ -14,7 +14,6 @@
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
 #include "schemes/complex/complex_solver.hpp"
-#include "schemes/complex/space_rows.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "schemes/simulation.hpp"
@@ -24,11 +23,13 @@
 #include "schemes/theories/field_theory.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/complex/mesh_rows.hpp"
+#include "tests/schemes/complex/space_complex.hpp"
 
 namespace {
 
 using namespace delf;
 using delf::testing::MeshRows;
+using delf::testing::SpaceRows;
 using Values = std::vector<double>;
 
 ParameterValues keys(std::initializer_list<std::pair<const char*, ParameterValue>> given) {

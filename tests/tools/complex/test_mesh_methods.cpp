@@ -114,6 +114,22 @@ TEST_CASE("methods on a mesh keep the form, and planted faults are found") {
   }
 }
 
+TEST_CASE(
+    "rows are verified against the stencils that made them: a gradient term that reads x does so at Gauss's points") {
+  const Folder folder;
+  folder.write("placed.ini",
+               "[theory]\ndensity = 0.5*phi_t^2 - 0.5*(1 + 0.2*x^2)*phi_x^2 - phi^4\n[lattice]\nspace = complex\n"
+               "mesh = quadrilaterals:2,1,8,4\ncourant = 0.3\n[boundary]\nmesh = natural\n[initial]\nphi = cos(x)\n"
+               "[run]\nsteps = 12\n[output]\nfigures = off\nevery = 1\n");
+  CHECK(delf_program(folder, "verify placed.ini --out v").code == 0);
+  REQUIRE(delf_program(folder, "run placed.ini --out out").code == 0);
+  CHECK(delf_program(folder, "verify placed.ini --fields out/fields.h5 --out v").code == 0);
+  CHECK(delf_program(folder,
+                     "verify placed.ini --theory.density='0.5*phi_t^2 - 0.5*(1 + 0.201*x^2)*phi_x^2 - phi^4' "
+                     "--fields out/fields.h5 --out v")
+            .code == 1);
+}
+
 TEST_CASE("every method on a mesh takes steps in turn, and ends at their time") {
   const Folder folder;
   const auto last = [&](const std::string& method, const std::string& steps) {

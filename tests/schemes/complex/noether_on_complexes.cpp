@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/complex/complex_noether.hpp"
-
 #include <array>
 #include <cmath>
 
 #include "jets/expressions/expression.hpp"
 #include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_solver.hpp"
-#include "schemes/complex/space_rows.hpp"
+#include "schemes/verify/noether_check.hpp"
 #include "tests/catch.hpp"
+#include "tests/schemes/complex/complex_forms.hpp"
 #include "tests/schemes/complex/mesh_rows.hpp"
+#include "tests/schemes/complex/space_complex.hpp"
 
 namespace {
 
 using namespace delf;
+using delf::testing::ComplexForms;
 using delf::testing::MeshRows;
+using delf::testing::SpaceRows;
 
 const LinearSymmetry rotation{"rotation", {0, -1, 1, 0}, {0, 0}};
 
@@ -39,13 +41,12 @@ struct Start {
 std::vector<Check> checks_on(const ComplexSystem& system, std::span<const double> y, bool forced = false,
                              bool wrong_sign = false) {
   std::mt19937_64 random(4);
-  const Touching touching(system.complex());
-  ComplexNoether noether({rotation}, 1e-13, forced, wrong_sign);
-  for (const int centres : {1, 5, 30})
-    noether.look_at(
-        system,
-        ComplexRegion::around(system.complex(), touching, draw_centres(system.complex(), touching, centres, random)), y,
-        "here", random);
+  const auto wrong = wrong_sign ? with_wrong_sign(system.row()) : nullptr;
+  NoetherCheck noether(wrong ? *wrong : system.row(), {rotation}, 1e-13, forced, 4);
+  for (const int centres : {1, 5, 30}) {
+    const ComplexForms forms(system, delf::testing::drawn_region(system, centres, random), y, wrong_sign);
+    noether.at(forms.on(), forms.y(), "here");
+  }
   return noether.checks();
 }
 

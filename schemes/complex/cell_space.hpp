@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lattice/index.hpp"
+#include "lattice/space/mesh_space.hpp"
+#include "schemes/complex/complex_system.hpp"
+#include "schemes/complex/space_tables.hpp"
+
+namespace delf {
+
+/// A mesh of space and a density on it, with what problems on it have in common.
+struct CellSpace : MeshSpace {
+  /// `constraint`: of d + 1 values at a vertex, as a theory declares it. Throws BadInput for a density that has no form on
+  /// cells.
+  CellSpace(Mesh, std::shared_ptr<const BatchDensity>, bool fixed_boundary,
+            std::shared_ptr<const StencilFamily> constraint = nullptr);
+
+  int sites() const { return static_cast<int>(mesh.points.size()); }
+  int fields() const { return density->components(); }
+  /// Values of a row: the fields, point by point; and behind them the multipliers, where there is a constraint.
+  std::size_t fields_of_row() const { return mesh.points.size() * at(fields()); }
+  std::size_t values_of_row() const { return fields_of_row() + (constraint ? mesh.points.size() : 0); }
+  /// use(i, G, ∂G/∂φ) at fields[i·d + a], site after site.
+  using UseConstraint = std::function<void(std::size_t i, double G, std::span<const double> slopes)>;
+  void each_constraint(std::span<const double> fields, const UseConstraint& use) const;
+  /// The largest |G(φ)| of some fields.
+  double largest_constraint(std::span<const double> fields) const;
+
+  std::shared_ptr<const BatchDensity> density;
+  std::shared_ptr<const StencilFamily> constraint;  ///< of d + 1 values at one vertex, λ the last of them; null: none
+  SpaceTables tables;
+  std::vector<double> masses;  ///< A_i
+};
+
+/// The potential of a mesh on rows of a complex, whose stencils have the measure of their row,
+///
+///     Σ_i A_i V(φ_i) + Σ_cells [V(φ, ∇φ) − V(φ, 0)],
+///
+/// and with a constraint A_i λ_i G(φ_i) besides. Then every value is a site of the complex of its own, since equations of one
+/// point are not matched with its own unknowns. A row has the sites of the fields, point by point, and behind them those of
+/// the multipliers, where there are any.
+class PotentialRows {
+ public:
+  /// `weights`: the λ_i G have A_i, and not 1.
+  PotentialRows(const CellSpace&, ComplexSystem&, bool weights);
+  /// A complex for it: of as many components as its sites have.
+  static ComplexSystem make_complex(const CellSpace& space) {
+    return ComplexSystem(space.constraint ? 1 : space.fields());
+  }
+
+  /// Sites and stencils of one more row; points of the fixed boundary are data.
+  void add(double t, double measure);
+  int per_point() const { return per_point_; }  ///< sites that hold the fields of a point
+  int per_row() const { return per_row_; }
+  /// The sites that hold the fields of some points in a row, appended.
+  void append_sites(int row, std::span<const std::int32_t> points, std::vector<int>& sites) const;
+
+ private:
+  const CellSpace& space_;
+  ComplexSystem& system_;
+  bool weights_;
+  int per_point_, per_row_, rows_ = 0;
+  int site_ = 0, constraint_ = 0;     ///< families
+  std::vector<int> gradient_;         ///< the family of each cell
+  std::vector<int> gradient_tables_;  ///< of each cell
+};
+
+/// The mesh alone, for problems without time: S = Σ V(φ), data on the fixed boundary. The line search weighs G against
+/// forces, which do not shrink with the mesh: constraints have no A_i.
+ComplexSystem mesh_complex(const CellSpace&);
+
+}  // namespace delf
