@@ -30,6 +30,7 @@ const std::vector<KeysOfSpaces>& keys_of_spaces() {
       {{circle}, {"boundary.winding"}, "{} has no winding"},
       {{circle}, {gain_key}, "only a circle is gone around"},
       {{interval}, {"boundary.left", "boundary.right", "boundary.left.flux", "boundary.right.flux"}, "{} has no walls"},
+      {{circle, interval, mesh, still, spacetime}, {"output.xdmf"}, "{} has no space to show"},
       {{point}, {"output.section"}, "sections are of mechanics, lattice.space = point"},
       {{mesh, still, spacetime}, {"lattice.mesh", "lattice.merge"}, of_meshes},
       {{mesh, still}, {"lattice.time", "boundary.mesh"}, of_meshes},
