@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <utility>
 #include <variant>
 
@@ -14,8 +15,10 @@
 #include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
+#include "tools/files/text_file.hpp"
 #include "tools/help.hpp"
 #include "tools/list.hpp"
+#include "tools/page/page.hpp"
 #include "tools/plan.hpp"
 #include "tools/resume.hpp"
 #include "tools/rows/initial_rows.hpp"
@@ -24,6 +27,7 @@
 #include "tools/scene/scene.hpp"
 #include "tools/scene/shipped_scenes.hpp"
 #include "tools/scene/suggestion.hpp"
+#include "tools/scene/values.hpp"
 #include "tools/stability/mesh_stability.hpp"
 #include "tools/stability/stability.hpp"
 #include "tools/sweep/sweep.hpp"
@@ -89,6 +93,57 @@ std::string resolved_of(const Scene& scene) {
 }
 std::string resolved_of(const ComplexScene& mesh) { return resolved_text(mesh); }
 
+const Scene& scene_of(const Scene& scene) { return scene; }
+const Scene& scene_of(const ComplexScene& mesh) { return mesh.scene; }
+
+/// The scene for the folder of a command that does not write it itself: what is in force, or of rows that are read from a
+/// file, and have no start, what is given.
+template <class SomeScene>
+std::string scene_for_page(const SomeScene& scene) try {
+  return resolved_of(scene);
+} catch (const BadInput&) {
+  const Settings& settings = scene_of(scene).settings;
+  return sections_of(settings, [&](const Parameter& key) {
+    const Setting* given = settings.find(key.key);
+    return given ? given->value : std::string();
+  });
+}
+
+/// Carries out `work`, and makes the page of its results, where the scene asks for it; of a run that fails, too.
+ExitCode with_page(bool wanted, const std::filesystem::path& folder, const std::function<ExitCode()>& work,
+                   const std::function<std::string()>& scene) {
+  if (!wanted) return work();
+  const auto make_page = [&] {
+    try {
+      if (!std::filesystem::exists(folder / "scene.ini") && scene) write_text_file(folder / "scene.ini", scene());
+      write_page({folder}, std::nullopt);
+    } catch (const std::exception& error) {
+      std::fputs(fmt::format("delf: no page: {}\n", error.what()).c_str(), stderr);
+    }
+  };
+  ExitCode code = ExitCode::done;
+  try {
+    code = work();
+  } catch (const BadInput&) {  // nothing was begun
+    throw;
+  } catch (const std::exception&) {
+    make_page();
+    throw;
+  }
+  make_page();
+  return code;
+}
+
+/// Carries out what writes results, and makes their page if output.report is on.
+template <class Work>
+ExitCode with_results(Settings settings, const Arguments& arguments, const Work& work) {
+  return with_scene(std::move(settings), arguments, [&](const auto& scene, const std::string& folder) {
+    return with_page(
+        Values(scene_of(scene).settings).toggle("output.report"), folder, [&] { return work(scene, folder); },
+        [&] { return scene_for_page(scene); });
+  });
+}
+
 /// Runs a scene in a folder, whose earlier run is kept unless the folder is named, or --overwrite given.
 template <class SomeScene>
 ExitCode run_keeping(const Arguments& arguments, const SomeScene& scene, const std::filesystem::path& folder) {
@@ -100,7 +155,7 @@ ExitCode run_keeping(const Arguments& arguments, const SomeScene& scene, const s
 }
 
 ExitCode carry_out_run(const Arguments& arguments) {
-  return with_scene(settings_of(arguments), arguments, [&](const auto& scene, const std::string& folder) {
+  return with_results(settings_of(arguments), arguments, [&](const auto& scene, const std::string& folder) {
     return run_keeping(arguments, scene, folder);
   });
 }
@@ -110,7 +165,19 @@ ExitCode carry_out_resume(const Arguments& arguments) {
     throw BadScene("command line: resume what? Name the folder of a run, such as `delf resume results/collision`");
   if (arguments.out) throw BadScene("command line: --out: a run is resumed in its own folder; leave it out");
   check_command_line(arguments.keys);
-  return resume(only_word(arguments, nullptr), arguments.keys);
+  const std::filesystem::path folder = only_word(arguments, nullptr);
+  bool page = false;
+  if (std::error_code none; std::filesystem::exists(folder / "scene.ini", none))
+    page = Values(read_settings(folder / "scene.ini", arguments.keys)).toggle("output.report");
+  return with_page(page, folder, [&] { return resume(folder, arguments.keys); }, {});
+}
+
+ExitCode carry_out_report(const Arguments& arguments) {
+  if (!arguments.keys.empty())
+    throw BadScene(fmt::format("command line: --{}: `report` reads no scene; leave it out", arguments.keys[0].key));
+  if (arguments.words.size() < 2)
+    throw BadScene("command line: report what? Name a folder of results, such as `delf report results/collision`");
+  return write_page({arguments.words.begin() + 1, arguments.words.end()}, arguments.out);
 }
 
 ExitCode carry_out_plan(const Arguments& arguments) {
@@ -124,33 +191,38 @@ ExitCode carry_out_verify(const Arguments& arguments) {
   if (std::error_code none; arguments.fields && !std::filesystem::exists(file_of_rows(*arguments.fields), none))
     throw BadScene(fmt::format("command line: --fields {}: no such file; check the path", *arguments.fields));
   if (arguments.fields && !is_on_mesh(settings)) imply_rows(settings, *arguments.fields);
-  return with_scene(std::move(settings), arguments, [&](const auto& scene, const std::string& folder) {
+  return with_results(std::move(settings), arguments, [&](const auto& scene, const std::string& folder) {
     return verify(scene, folder, arguments.fields, arguments.nearby);
   });
 }
 
-ExitCode carry_out_sweep(const Arguments& arguments) {
-  return sweep(file_of(arguments), arguments.keys, arguments.out);
+ExitCode sweep_with_page(const Arguments& arguments, SweepKind kind) {
+  const std::filesystem::path scene = file_of(arguments);
+  const std::string ending = kind == SweepKind::compare ? "-compare" : "-sweep";
+  return with_page(Values(read_settings(scene, arguments.keys)).toggle("output.report"),
+                   arguments.out.value_or("results/" + scene.stem().string() + ending),
+                   [&] { return sweep(scene, arguments.keys, arguments.out, kind); }, {});
 }
-
-ExitCode carry_out_compare(const Arguments& arguments) {
-  return sweep(file_of(arguments), arguments.keys, arguments.out, SweepKind::compare);
-}
+ExitCode carry_out_sweep(const Arguments& arguments) { return sweep_with_page(arguments, SweepKind::sweep); }
+ExitCode carry_out_compare(const Arguments& arguments) { return sweep_with_page(arguments, SweepKind::compare); }
 
 ExitCode carry_out_convergence(const Arguments& arguments) {
-  return with_scene(settings_of(arguments), arguments,
-                    [](const auto& scene, const std::string& folder) { return convergence(scene, folder); });
+  return with_results(settings_of(arguments), arguments,
+                      [](const auto& scene, const std::string& folder) { return convergence(scene, folder); });
 }
 
 ExitCode carry_out_workprecision(const Arguments& arguments) {
   const Scene scene = read_scene(settings_of(arguments));
   say_warnings(scene);
-  return workprecision(scene, arguments.out.value_or("results/" + scene.name));
+  const std::string folder = arguments.out.value_or("results/" + scene.name);
+  return with_page(
+      Values(scene.settings).toggle("output.report"), folder, [&] { return workprecision(scene, folder); },
+      [&] { return scene_for_page(scene); });
 }
 
 ExitCode carry_out_stability(const Arguments& arguments) {
-  return with_scene(settings_of(arguments), arguments,
-                    [](const auto& scene, const std::string& folder) { return stability(scene, folder); });
+  return with_results(settings_of(arguments), arguments,
+                      [](const auto& scene, const std::string& folder) { return stability(scene, folder); });
 }
 
 ExitCode carry_out_list(const Arguments& arguments) {
@@ -211,7 +283,7 @@ const std::vector<Command>& table() {
        "run.until\n"
        "(from time 0) or run.steps is raised. The keys are those that the run began with; besides these two, "
        "run.threads,\n"
-       "output.checkpoint, output.format and output.titles may change. It takes the same version of delf, on a "
+       "output.checkpoint, output.format, output.titles and output.report may change. It takes the same version of delf, on a "
        "processor with the same instructions.",
        false, carry_out_resume},
       {"plan",
@@ -314,6 +386,18 @@ const std::vector<Command>& table() {
        "as a table, stability.json and methods.md.\n\n"
        "The keys of its own section; all others are those of `delf help run`:",
        true, carry_out_stability, "stability"},
+      {"report", "delf report DIR [DIR ...] [--out FILE]", "a page of results, in one file",
+       "Makes a page of HTML of a folder of results: the verdict; the theory and its equations; the scheme; numbers, with "
+       "what\n"
+       "they mean; figures, with what is found in them; verification, monitors; the scene and the command that runs it "
+       "again;\n"
+       "machine, compiler and seeds; files with their SHA-256 (by sha256sum). Several folders are shown side by side.\n"
+       "Nothing is computed again: it is made of the files that are there, of a run that failed or was killed, too, and "
+       "says\n"
+       "what is missing. The page is DIR/report.html, or FILE; of several folders it is report.html in the current one. It\n"
+       "has no script, loads nothing, and takes a million bytes at most. output.report = on makes it with the results of a\n"
+       "command.",
+       false, carry_out_report},
       {"list", "delf list [theories|stencils|schemes|states|scenes]", "what there is",
        "Lists what a scene can name, with formulas; everything if no kind is given.", false, carry_out_list},
       {"help", "delf help [COMMAND]", "this, or the details of a command", "Explains a command.", false,

@@ -7,16 +7,14 @@
 #include <chrono>
 #include <cmath>
 
-#include "schemes/stability/linear_stability.hpp"
-#include "schemes/stability/parasites.hpp"
-#include "tools/equations.hpp"
 #include "tools/outcome/outcome.hpp"
+#include "tools/report/equations.hpp"
 #include "tools/report/in_words.hpp"
 #include "tools/report/seconds_since.hpp"
 #include "tools/rows/engine.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/run/stepping.hpp"
-#include "tools/warnings/vacuum_symbol.hpp"
+#include "tools/warnings/waves_in_words.hpp"
 
 namespace delf {
 
@@ -85,21 +83,10 @@ std::string cost(const Scene& scene, const InitialRows& initial, Simulation& sim
   }
 }
 
-// The verdict of linear theory on the scheme, with these steps, about a constant field.
-std::string waves_in_words(const Scene& scene, const Simulation& simulation) {
-  const auto symbol = symbol_of(scene, simulation);
-  if (!symbol) return {};
-  const StabilityVerdict verdict = linear_stability(*symbol, symbol->size() > 1 ? 33 : 101);
-  std::string words = verdict.stable ? "none grows exponentially"
-                      : std::isfinite(verdict.amplification)
-                          ? fmt::format("those near qk = {:.3g} grow by {:.4g} in each step", verdict.worst_theta,
-                                        verdict.amplification)
-                          : fmt::format("without walls no step determines those of qk = {:.3g}", verdict.worst_theta);
-  for (const Ghost& ghost : verdict.ghosts) words += "\n             " + ghost.words;
-  for (const Parasite& parasite : parasites(*symbol))
-    words += fmt::format("\n             {} is a wave of the scheme ({} root{}), and none of the theory", parasite.wave,
-                         parasite.roots, parasite.roots > 1 ? "s" : "");
-  return fmt::format("waves        about the field {:.6g}: {}\n", *stable_vacuum(scene, simulation), words);
+/// Lines below the first are indented as far as it is.
+std::string broken_lines(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) text.insert(++at, 13, ' ');
+  return text;
 }
 
 }  // namespace
@@ -138,7 +125,8 @@ ExitCode plan(const Scene& scene, bool latex) {
                simulation.plan_report());
     if (const std::string threads = threads_in_words(simulation, scene.problem.threads); !threads.empty())
       fmt::print("threads      {}\n", threads);
-    fmt::print("{}", waves_in_words(scene, simulation));
+    if (const std::string waves = waves_in_words(scene, simulation); !waves.empty())
+      fmt::print("waves        {}\n", broken_lines(waves));
     fmt::print("cost         {}\n", cost(scene, initial, simulation));
     return ExitCode::done;
   });

@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> harmless{"run.until",         "run.steps",     "run.threads",
-                                        "output.checkpoint", "output.format", "output.titles"};
+const std::vector<std::string> harmless{"run.until",     "run.steps",     "run.threads",   "output.checkpoint",
+                                        "output.format", "output.titles", "output.report", "output.xdmf"};
 bool is_harmless(const std::string& key) { return std::ranges::find(harmless, key) != harmless.end(); }
 
 // Throws BadScene if a key that matters has another value than the run began with.

@@ -19,10 +19,13 @@ namespace {
 
 using namespace expressions;
 
-constexpr const char* too_large = "too large to be written here";
+std::string too_large_in(Notation notation) {
+  const std::string words = "too large to be written here";
+  return notation == Notation::mathml ? "<mtext>" + words + "</mtext>" : words;
+}
 
 std::string name_of(const std::string& name, Notation notation) {
-  return notation == Notation::latex ? latex_name(name) : name;
+  return notation == Notation::latex ? latex_name(name) : notation == Notation::mathml ? mathml_name(name) : name;
 }
 
 /// λ, or of several λ₁, λ₂, …, unless something else is called that.
@@ -46,6 +49,11 @@ std::string jet_name(int variable, const JetVariables& jets, const ExpressionNam
   if (!jets.is_derivative(variable)) return name_of(names.parameters[variable - jets.parameter(0)].first, notation);
   const auto [a, in_t, in_x] = jets.of(variable);
   const std::string by = std::string(delf::at(in_t), 't') + std::string(delf::at(in_x), 'x');
+  if (notation == Notation::mathml) {
+    std::string letters;  // each by itself: a name of several is upright
+    for (const char letter : by) letters.append("<mi>").append(1, letter).append("</mi>");
+    return mathml_name(names.fields[a], letters);
+  }
   const std::string field = name_of(names.fields[a], notation);
   if (by.empty()) return field;
   if (notation == Notation::plain) return field + "_" + by;
@@ -89,6 +97,14 @@ class SiteVariables {
   }
   std::string name(int v, Notation notation) const {
     constexpr const char* letters[] = {"h", "k", "x", "t"};
+    if (notation == Notation::mathml) {
+      if (v < parameters) return mathml_name(letters[v], v == x ? "<mi>i</mi>" : v == t ? "<mi>j</mi>" : "");
+      if (v >= multiplier(0) && !is_site(v))
+        return mathml_name(multiplier_name(names_, v - multiplier(0), constraints_), "<mi>i</mi>", "<mi>j</mi>");
+      if (!is_site(v)) return mathml_name(names_.parameters[v - parameters].first);
+      const auto& [field, time, space] = sites_[v - first_site()];
+      return mathml_name(names_.fields[field], index_in_mathml("i", space), index_in_mathml("j", time));
+    }
     if (v >= multiplier(0) && !is_site(v)) {
       const std::string lambda = name_of(multiplier_name(names_, v - multiplier(0), constraints_), notation);
       return lambda + (notation == Notation::latex ? "_{i}^{j}" : "(j,i)");
@@ -114,6 +130,11 @@ class SiteVariables {
 
  private:
   int first_site() const { return multiplier(constraints_); }
+  static std::string index_in_mathml(const std::string& letter, int offset) {
+    const std::string text = "<mi>" + letter + "</mi>";
+    if (offset == 0) return text;
+    return text + (offset > 0 ? "<mo>+</mo><mn>" : "<mo>\u2212</mo><mn>") + std::to_string(std::abs(offset)) + "</mn>";
+  }
 
   const ExpressionNames& names_;
   int constraints_;
@@ -148,7 +169,8 @@ class DiscreteEquations {
     }
     Sums sums(graph_, [](int v) { return v == SiteVariables::h || v == SiteVariables::k; });
     const Naming naming{[&](int v) { return sites_.name(v, notation); }, [&](int v) { return sites_.rank(v); }};
-    return printed(sums, sums.of(terms), naming, notation, [&](int v) { return sites_.is_site(v); }) + " = 0";
+    return equals_zero(printed(sums, sums.of(terms), naming, notation, [&](int v) { return sites_.is_site(v); }),
+                       notation);
   }
 
  private:
@@ -260,7 +282,7 @@ std::string density_formula(const SymbolicDensity& density, Notation notation) {
     Sums sums(graph, none);
     return printed(sums, sums.of({l}), jet_naming(jets, density.names(), notation), notation);
   } catch (const TooLarge&) {
-    return too_large;
+    return too_large_in(notation);
   }
 }
 
@@ -271,7 +293,7 @@ std::string constraint_formula(const SymbolicDensity& density, const std::string
   Graph graph;
   Sums sums(graph, none);
   const int G = parse(graph, constraint, jets.names, "theory.constraint");
-  return printed(sums, sums.of({G}), jet_naming(jets, density.names(), notation), notation) + " = 0";
+  return equals_zero(printed(sums, sums.of({G}), jet_naming(jets, density.names(), notation), notation), notation);
 }
 
 }  // namespace
@@ -289,10 +311,10 @@ std::vector<std::string> field_equations(const SymbolicDensity& density, Notatio
         const int G = parse(graph, constraints_of(density.constraint())[at(m)], jets.names, "theory.constraint");
         terms.push_back(graph.negate(graph.multiply(graph.variable(jets.multiplier(m)), graph.differentiate(G, a))));
       }
-      equations.push_back(
-          printed(sums, sums.of(terms), jet_naming(jets, density.names(), notation, constraints), notation) + " = 0");
+      equations.push_back(equals_zero(
+          printed(sums, sums.of(terms), jet_naming(jets, density.names(), notation, constraints), notation), notation));
     } catch (const TooLarge&) {
-      equations.emplace_back(too_large);
+      equations.emplace_back(too_large_in(notation));
     }
   for (const std::string& constraint : constraints_of(density.constraint()))
     equations.push_back(constraint_formula(density, constraint, notation));
@@ -307,11 +329,14 @@ std::vector<std::string> discrete_field_equations(const SymbolicDensity& density
   for (int a = 0; a < density.components(); ++a)
     for (const auto& parity : parities) try {
         equations.push_back(DiscreteEquations(density, table).equation(a, parity, notation));
-        if (parity)
+        const char* which = parity && *parity == 0 ? "even" : "odd";
+        if (parity && notation == Notation::mathml)
+          equations.back() += std::string("<mtext>  (i + j ") + which + ")</mtext>";
+        else if (parity)
           equations.back() += std::string(notation == Notation::latex ? "\\quad (i + j \\text{ " : "  (i + j ") +
-                              (*parity == 0 ? "even" : "odd") + (notation == Notation::latex ? "})" : ")");
+                              which + (notation == Notation::latex ? "})" : ")");
       } catch (const TooLarge&) {
-        equations.emplace_back(too_large);
+        equations.emplace_back(too_large_in(notation));
       }
   return equations;
 }

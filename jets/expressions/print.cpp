@@ -40,20 +40,32 @@ std::string digits(double value) {
   return {text.data(), end};
 }
 
+/// Elements of MathML. Factors follow each other without a sign, which a reader hears as "times".
+std::string row(const std::string& inside) { return "<mrow>" + inside + "</mrow>"; }
+std::string operator_sign(const char* sign) { return "<mo>" + std::string(sign) + "</mo>"; }
+constexpr auto invisible_times = "\u2062", apply_function = "\u2061", minus = "\u2212";
+
 class Printer {
  public:
   Printer(const Sums& sums, const Naming& naming, Notation notation, const std::function<bool(int)>& collected)
-      : sums_(sums), naming_(naming), latex_(notation == Notation::latex), collected_(collected) {}
+      : sums_(sums),
+        naming_(naming),
+        latex_(notation == Notation::latex),
+        mathml_(notation == Notation::mathml),
+        collected_(collected) {}
 
   std::string sum(Sum terms) {
-    if (terms.empty()) return "0";
+    if (terms.empty()) return number_text(0);
     std::ranges::stable_sort(terms, std::ranges::greater{},
                              [this](const Term& t) { return std::pair(rank(t), t.coefficient > 0); });
     std::string text;
+    const bool outermost = std::exchange(outermost_, false);
     const auto append = [&](bool negative, const std::string& term) {
-      text += text.empty() ? (negative ? "-" : "") : negative ? " - " : " + ";
+      if (!mathml_) text += text.empty() ? (negative ? "-" : "") : negative ? " - " : " + ";
+      else if (negative || !text.empty())
+        text.append(outermost && !text.empty() ? "\n" : "").append(operator_sign(negative ? minus : "+"));
       text += term;
-      if (text.size() > most_printed) throw TooLarge("it is too long to print");
+      if (text.size() > (mathml_ ? 12 : 1) * most_printed) throw TooLarge("it is too long to print");
     };
     std::vector<bool> done(terms.size(), false);
     for (std::size_t n = 0; n < terms.size(); ++n) {
@@ -105,7 +117,12 @@ class Printer {
   }
 
   std::string bracket(const std::string& inside) const {
+    if (mathml_) return row(operator_sign("(") + inside + operator_sign(")"));
     return latex_ ? "\\left(" + inside + "\\right)" : "(" + inside + ")";
+  }
+  std::string root(const std::string& inside) const {
+    if (mathml_) return "<msqrt>" + inside + "</msqrt>";
+    return (latex_ ? "\\sqrt{" : "sqrt(") + inside + (latex_ ? "}" : ")");
   }
 
   /// A sum of equal coefficients as (a + b)/n.
@@ -134,19 +151,20 @@ class Printer {
     std::string base;
     if (atom.kind == Atom::variable) base = naming_.name(atom.number);
     else if (atom.kind == Atom::sum) {
-      if (exponent == 0.5)
-        return latex_ ? "\\sqrt{" + operand(atom.operand) + "}" : "sqrt(" + operand(atom.operand) + ")";
+      if (exponent == 0.5) return root(operand(atom.operand));
       base = sum_as_factor(atom.operand);
     } else {
       const auto name =
           std::ranges::find(function_names, atom.operation, [](const auto& f) { return f.first; })->second;
+      if (mathml_) return function_in_mathml(name, operand(atom.operand), exponent);
       const bool known = atom.operation != Operation::atan;
       std::string f = latex_ ? (known ? "\\" : "\\arctan") + std::string(known ? name : "") : std::string(name);
       if (latex_ && exponent != 1) return f + "^{" + number_text(exponent) + "}" + bracket(operand(atom.operand));
       base = f + bracket(operand(atom.operand));
     }
-    if (exponent == 0.5) return latex_ ? "\\sqrt{" + base + "}" : "sqrt(" + base + ")";
+    if (exponent == 0.5) return root(base);
     if (exponent == 1) return base;
+    if (mathml_) return power_in_mathml(base.starts_with("<msubsup>") ? bracket(base) : base, exponent);
     if (latex_)
       return (base.find('^') == std::string::npos || base.back() == ')' ? base : "{" + base + "}") + "^{" +
              number_text(exponent) + "}";
@@ -154,14 +172,30 @@ class Printer {
     return base + "^" + (power.find('/') == std::string::npos ? power : "(" + power + ")");
   }
 
+  std::string power_in_mathml(const std::string& base, double exponent) const {
+    return exponent == 1 ? base : "<msup>" + base + number_text(exponent) + "</msup>";
+  }
+  std::string function_in_mathml(const std::string& name, const std::string& operand, double exponent) const {
+    const auto applied = [&](const std::string& f) { return f + operator_sign(apply_function) + bracket(operand); };
+    if (name == "cosm1")  // cos φ − 1
+      return power_in_mathml(bracket(applied("<mi>cos</mi>") + operator_sign(minus) + "<mn>1</mn>"), exponent);
+    return applied(power_in_mathml("<mi>" + (name == "atan" ? "arctan" : name) + "</mi>", exponent));
+  }
+
+  std::string number_digits(double value) const {
+    if (!mathml_) return digits(value);
+    return value < 0 ? row(operator_sign(minus) + number_digits(-value)) : "<mn>" + digits(value) + "</mn>";
+  }
   std::string number_text(double value) const {
     const auto [p, q] = fraction(value);
-    if (q == 1) return digits(p);
+    if (q == 1) return number_digits(p);
+    if (mathml_) return "<mfrac>" + number_digits(p) + number_digits(q) + "</mfrac>";
     return latex_ ? "\\frac{" + digits(p) + "}{" + digits(q) + "}" : digits(p) + "/" + digits(q);
   }
 
-  static std::string without_brackets(const std::string& text) {
-    constexpr std::string_view left = "\\left(", right = "\\right)";
+  std::string without_brackets(const std::string& text) const {
+    const std::string_view left = mathml_ ? "<mrow><mo>(</mo>" : "\\left(",
+                           right = mathml_ ? "<mo>)</mo></mrow>" : "\\right)";
     if (!text.starts_with(left) || !text.ends_with(right)) return text;
     const std::string inside = text.substr(left.size(), text.size() - left.size() - right.size());
     return inside.find(left) == std::string::npos ? inside : text;
@@ -169,7 +203,8 @@ class Printer {
 
   std::string joined(const std::vector<std::string>& factors) const {
     std::string text;
-    for (const std::string& one : factors) text += (text.empty() ? "" : latex_ ? "\\," : "*") + one;
+    for (const std::string& one : factors)
+      text += (text.empty() ? "" : mathml_ ? operator_sign(invisible_times) : latex_ ? "\\," : "*") + one;
     return text;
   }
 
@@ -177,32 +212,35 @@ class Printer {
   std::string product(const Term& term, const std::string& further = {}) {
     std::vector<std::string> above, below;
     const auto [p, q] = fraction(std::abs(term.coefficient));
-    if (p != 1) above.push_back(digits(p));
-    if (q != 1) below.push_back(digits(q));
+    if (p != 1) above.push_back(number_digits(p));
+    if (q != 1) below.push_back(number_digits(q));
     // plain variables first, then functions and sums
     for (const auto kind : {Atom::variable, Atom::function, Atom::sum})
       for (const auto& [number, exponent] : term.powers)
         if (sums_.atom(number).kind == kind)
           (exponent > 0 ? above : below).push_back(factor(number, std::abs(exponent)));
     if (!further.empty()) above.push_back(further);
-    if (above.empty()) above.emplace_back("1");
-    if (latex_ && !below.empty())  // a fraction needs no brackets
+    if (above.empty()) above.push_back(number_digits(1));
+    const bool bar = latex_ || mathml_;
+    if (bar && !below.empty())  // a fraction needs no brackets
       for (auto* part : {&above, &below})
         if (part->size() == 1 && further.empty()) part->front() = without_brackets(part->front());
     if (below.empty()) return joined(above);
-    if (latex_) {
-      if (!further.empty()) {  // 1/h² (…)
-        above.pop_back();
-        return "\\frac{" + (above.empty() ? "1" : joined(above)) + "}{" + joined(below) + "}" + further;
-      }
-      return "\\frac{" + joined(above) + "}{" + joined(below) + "}";
+    if (bar) {
+      if (!further.empty()) above.pop_back();  // 1/h² (…)
+      if (above.empty()) above.push_back(number_digits(1));
+      const std::string numerator = joined(above), denominator = joined(below);
+      return (mathml_ ? "<mfrac>" + row(numerator) + row(denominator) + "</mfrac>"
+                      : "\\frac{" + numerator + "}{" + denominator + "}") +
+             further;
     }
     return joined(above).append(1, '/').append(below.size() == 1 ? below[0] : bracket(joined(below)));
   }
 
   const Sums& sums_;
   const Naming& naming_;
-  bool latex_;
+  bool latex_, mathml_;
+  bool outermost_ = true;  ///< no sum has been begun
   const std::function<bool(int)>& collected_;
 };
 
@@ -213,20 +251,51 @@ std::string printed(const Sums& sums, const Sum& sum, const Naming& naming, Nota
   return Printer(sums, naming, notation, collected).sum(sum);
 }
 
-std::string latex_name(std::string_view name) {
-  constexpr std::array<std::string_view, 24> greek{
-      "alpha", "beta", "gamma", "delta", "epsilon", "zeta",    "eta", "theta", "iota", "kappa", "lambda", "mu",
-      "nu",    "xi",   "rho",   "sigma", "tau",     "upsilon", "phi", "chi",   "psi",  "omega", "pi",     "varphi"};
+namespace {
+
+/// A name as papers have it: its head, which may be a Greek letter, and its subscript.
+struct NameParts {
+  std::string head, sub;
+  const char* greek = nullptr;  ///< the letter itself
+};
+NameParts parts_of(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 24> letters{
+      {{"alpha", "α"}, {"beta", "β"},  {"gamma", "γ"}, {"delta", "δ"}, {"epsilon", "ε"}, {"zeta", "ζ"},
+       {"eta", "η"},   {"theta", "θ"}, {"iota", "ι"},  {"kappa", "κ"}, {"lambda", "λ"},  {"mu", "μ"},
+       {"nu", "ν"},    {"xi", "ξ"},    {"rho", "ρ"},   {"sigma", "σ"}, {"tau", "τ"},     {"upsilon", "υ"},
+       {"phi", "φ"},   {"chi", "χ"},   {"psi", "ψ"},   {"omega", "ω"}, {"pi", "π"},      {"varphi", "φ"}}};
   const auto end_of_letters = std::min(name.find_first_of("0123456789_"), name.size());
-  const std::string_view head = name.substr(0, end_of_letters);
-  std::string rest(name.substr(end_of_letters));
-  if (!rest.empty() && rest.front() == '_') rest.erase(0, 1);
-  std::erase(rest, '_');
-  std::string text = head == "phi"                                   ? "\\varphi"
-                     : std::ranges::find(greek, head) != greek.end() ? std::string(1, '\\').append(head)
-                     : head.size() > 1                               ? "\\mathrm{" + std::string(head) + "}"
-                                                                     : std::string(head);
-  return rest.empty() ? text : text + "_{" + rest + "}";
+  NameParts parts{std::string(name.substr(0, end_of_letters)), std::string(name.substr(end_of_letters))};
+  if (!parts.sub.empty() && parts.sub.front() == '_') parts.sub.erase(0, 1);
+  std::erase(parts.sub, '_');
+  const auto letter = std::ranges::find(letters, parts.head, &std::pair<std::string_view, const char*>::first);
+  if (letter != letters.end()) parts.greek = letter->second;
+  return parts;
+}
+
+}  // namespace
+
+std::string latex_name(std::string_view name) {
+  const auto [head, sub, greek] = parts_of(name);
+  const std::string text = head == "phi"     ? "\\varphi"
+                           : greek           ? std::string(1, '\\').append(head)
+                           : head.size() > 1 ? "\\mathrm{" + head + "}"
+                                             : head;
+  return sub.empty() ? text : text + "_{" + sub + "}";
+}
+
+std::string mathml_name(std::string_view name, const std::string& below, const std::string& above) {
+  const auto [head, sub, greek] = parts_of(name);
+  const std::string base = "<mi>" + (greek ? std::string(greek) : head) + "</mi>";
+  const bool number = sub.find_first_not_of("0123456789") == std::string::npos;
+  const std::string own = sub.empty() ? "" : number ? "<mn>" + sub + "</mn>" : "<mi>" + sub + "</mi>";
+  const std::string under = row(own + (own.empty() || below.empty() ? "" : operator_sign(",")) + below);
+  if (own.empty() && below.empty()) return above.empty() ? base : "<msup>" + base + row(above) + "</msup>";
+  return above.empty() ? "<msub>" + base + under + "</msub>" : "<msubsup>" + base + under + row(above) + "</msubsup>";
+}
+
+std::string equals_zero(const std::string& sum, Notation notation) {
+  return sum + (notation == Notation::mathml ? "<mo>=</mo><mn>0</mn>" : " = 0");
 }
 
 }  // namespace delf::expressions

@@ -10,7 +10,8 @@ namespace delf::expressions {
 
 enum class Notation {
   plain,  ///< as densities are written: m^2*sin(phi)
-  latex
+  latex,
+  mathml  ///< presentation elements; every term of the outermost sum begins on a line of its own
 };
 
 /// The spelling of variables, and the order of terms.
@@ -19,7 +20,7 @@ struct Naming {
   std::function<int(int variable)> rank = [](int) { return 0; };  ///< the highest first
 };
 
-/// Texts of more characters are given up, by TooLarge.
+/// Texts of more characters are given up, by TooLarge; in MathML, whose tags count, of twelve times as many.
 inline constexpr std::size_t most_printed = 6000;
 
 /// A sum of products. Terms that differ in one variable of `collected` alone stand in a bracket before their common factor:
@@ -30,5 +31,9 @@ std::string printed(
 
 /// A name such as lambda or x0 in LaTeX: \lambda, x_{0}.
 std::string latex_name(std::string_view name);
+/// A name in MathML, its own subscript before those given: φ with `below` and `above`, which are elements.
+std::string mathml_name(std::string_view name, const std::string& below = {}, const std::string& above = {});
+/// The sum and " = 0" in a notation.
+std::string equals_zero(const std::string& sum, Notation);
 
 }  // namespace delf::expressions

@@ -98,7 +98,7 @@ void MeshRecorder::visit(SavedState& state) {
 void MeshRecorder::close() {
   Recorder::close();
   if (!c_.scene.fields || !has_xdmf(c_)) return;
-  write_frames_file(folder_, names_of(c_).of[Role::field], times_.size(), at(c_.sites()));
+  write_frames_file(folder_, {{"/field", names_of(c_).of[Role::field]}}, times_.size(), at(c_.sites()));
   write_text_file(folder_ / "fields.xdmf", xdmf(c_, times_));
 }
 

@@ -31,7 +31,7 @@ void refuse_foreign_scene(const fs::path& folder) {
 
 void remove_final_results(const fs::path& folder) {
   std::error_code none;
-  for (const char* name : {"summary.json", "section.csv"}) fs::remove(folder / name, none);
+  for (const char* name : {"summary.json", "section.csv", "report.html"}) fs::remove(folder / name, none);
   remove_figures(figure_names(), folder);
 }
 
@@ -39,14 +39,15 @@ void remove_earlier_run(const fs::path& folder) {
   refuse_foreign_scene(folder);
   remove_final_results(folder);
   std::error_code none;
-  for (const char* name : {"checkpoint", "checkpoint.previous", "series.csv", "fields.h5", "fields.xdmf", "frames.h5"})
+  for (const char* name :
+       {"checkpoint", "checkpoint.previous", "series.csv", "fields.h5", "fields.xdmf", "surface.xdmf", "frames.h5"})
     fs::remove(folder / name, none);
 }
 
 std::string files_of_run(const fs::path& folder) {
   std::string names;
-  for (const char* name :
-       {"summary.json", "series.csv", "section.csv", "scene.ini", "fields.h5", "fields.xdmf", "frames.h5", "figures"})
+  for (const char* name : {"summary.json", "series.csv", "section.csv", "scene.ini", "fields.h5", "fields.xdmf",
+                           "surface.xdmf", "frames.h5", "figures"})
     if (std::error_code none; fs::exists(folder / name, none)) names += std::string(" ") + name;
   return names;
 }

@@ -15,6 +15,7 @@
 #include "schemes/theories/angles.hpp"
 #include "tools/compare/estimate_error.hpp"
 #include "tools/figures/figures.hpp"
+#include "tools/files/lattice_xdmf.hpp"
 #include "tools/files/state_in_memory.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/outcome/outcome.hpp"
@@ -148,6 +149,9 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   Recorder recorder(scene, folder, resolved, outcome.winding, begun.names, kept);
   Checkpoints checkpoints = run.begin(recorder, scene, resolved);
   begun.step(scene, recorder, checkpoints, run);
+  if (scene.fields && outcome.records > 0 && scene.problem.lattice.space() != Space::point &&
+      Values(scene.settings).toggle("output.xdmf"))
+    run.attempt([&] { write_lattice_xdmf(folder, begun.names); });
   DrawnSection section;
   if (const Section* points = stepping.section()) {
     section = {points->table(), points->title(), points->drawn_columns()};

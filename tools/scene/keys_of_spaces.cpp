@@ -30,6 +30,7 @@ const std::vector<KeysOfSpaces>& keys_of_spaces() {
       {{circle}, {"boundary.winding"}, "{} has no winding"},
       {{circle}, {gain_key}, "only a circle is gone around"},
       {{interval}, {"boundary.left", "boundary.right", "boundary.left.flux", "boundary.right.flux"}, "{} has no walls"},
+      {{circle, interval, mesh, still, spacetime}, {"output.xdmf"}, "{} has no space to show"},
       {{point}, {"output.section"}, "sections are of mechanics, lattice.space = point"},
       {{mesh, still, spacetime}, {"lattice.mesh", "lattice.merge"}, of_meshes},
       {{mesh, still}, {"lattice.time", "boundary.mesh"}, of_meshes},
@@ -38,13 +39,13 @@ const std::vector<KeysOfSpaces>& keys_of_spaces() {
       {{circle, interval, point, mesh},
        {"lattice.courant", "lattice.time_step", "run.until", "run.steps", "output.every"}},
       {{circle, interval, point, mesh, still, spacetime},
-       {"theory.name",       "theory.fibre",          "lattice.space",       "scheme.method",
-        "scheme.tolerance",  "scheme.max_iterations", "initial.state",       "run.seed",
-        "output.checkpoint", "output.fields",         "output.figures",      "output.format",
-        "output.titles",     "verify.variations",     "verify.moments",      "verify.tolerance",
-        "verify.fault",      "verify.generator",      "verify.force",        "convergence.levels",
-        "convergence.order", "convergence.agreement", "stability.agreement", "stability.steps",
-        "stability.fault"}},
+       {"theory.name",        "theory.fibre",          "lattice.space",         "scheme.method",
+        "scheme.tolerance",   "scheme.max_iterations", "initial.state",         "run.seed",
+        "output.checkpoint",  "output.fields",         "output.figures",        "output.format",
+        "output.titles",      "output.report",         "verify.variations",     "verify.moments",
+        "verify.tolerance",   "verify.fault",          "verify.generator",      "verify.force",
+        "convergence.levels", "convergence.order",     "convergence.agreement", "stability.agreement",
+        "stability.steps",    "stability.fault"}},
   };
   return all;
 }

@@ -228,6 +228,15 @@ std::vector<Parameter> scene_keys() {
        .help = "titles above the figures; a paper has captions instead",
        .choices = on_or_off},
       {.key = "output.fields", .fallback = "on", .help = "write the recorded rows to fields.h5", .choices = on_or_off},
+      {.key = "output.xdmf",
+       .fallback = "off",
+       .help = "write what ParaView opens fields.h5 by: fields.xdmf, a series of rows, and surface.xdmf, over x "
+               "and t; a mesh always has the first",
+       .choices = on_or_off},
+      {.key = "output.report",
+       .fallback = "off",
+       .help = "make a page of the results, report.html, as `delf report` does",
+       .choices = on_or_off},
       {.key = "output.estimate",
        .fallback = "off",
        .help = "estimate the errors of the last row and of the measures by two more runs, "

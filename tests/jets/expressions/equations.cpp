@@ -87,6 +87,39 @@ TEST_CASE("field equations are written as in papers") {
         "\\frac{\\varphi_{t}^{2}}{2} - \\sqrt{\\varphi_{x}^{2} + 1}");
 }
 
+TEST_CASE("equations in MathML are balanced elements, with a line for each term of a sum") {
+  const std::string phi_tt = "<msub><mi>φ</mi><mrow><mi>t</mi><mi>t</mi></mrow></msub>",
+                    phi_xx = "<msub><mi>φ</mi><mrow><mi>x</mi><mi>x</mi></mrow></msub>";
+  CHECK(continuous("0.5*phi_t^2 - 0.5*phi_x^2 + cos(phi)/3", {}, Notation::mathml) ==
+        Lines{phi_tt + "\n<mo>−</mo>" + phi_xx +
+              "\n<mo>+</mo><mfrac><mrow><mi>sin</mi><mo>\u2061</mo><mrow><mo>(</mo><mi>φ</mi><mo>)</mo></mrow></mrow>"
+              "<mrow><mn>3</mn></mrow></mfrac><mo>=</mo><mn>0</mn>"});
+  CHECK(
+      density_formula(*expression("0.5*phi_t^2 - sqrt(1 + phi_x^2)"), Notation::mathml) ==
+      "<mfrac><mrow><msup><msub><mi>φ</mi><mrow><mi>t</mi></mrow></msub><mn>2</mn></msup></mrow><mrow><mn>2</mn></mrow>"
+      "</mfrac>\n<mo>−</mo><msqrt><msup><msub><mi>φ</mi><mrow><mi>x</mi></mrow></msub><mn>2</mn></msup><mo>+</mo>"
+      "<mn>1</mn></msqrt>");
+  // a site has its row above and its place below, and brackets where it is squared
+  CHECK(mathml_name("u_1", "<mi>i</mi>", "<mi>j</mi>") ==
+        "<msubsup><mi>u</mi><mrow><mn>1</mn><mo>,</mo><mi>i</mi></mrow><mrow><mi>j</mi></mrow></msubsup>");
+  for (const auto& named : named_tables())
+    for (const char* density : {"0.5*phi_t^2 - 0.5*phi_x^2 - 0.25*phi^4", "0.5*phi_t^2 - exp(phi_x)*x + t*atan(phi)"})
+      for (const std::string& equation :
+           discrete_field_equations(*expression(density), named.table, Notation::mathml)) {
+        std::vector<std::string> open;
+        for (std::size_t at = 0; (at = equation.find('<', at)) != std::string::npos; ++at) {
+          const std::string tag = equation.substr(at + 1, equation.find('>', at) - at - 1);
+          if (tag.front() != '/') open.push_back(tag);
+          else {
+            REQUIRE_FALSE(open.empty());
+            CHECK(open.back() == tag.substr(1));
+            open.pop_back();
+          }
+        }
+        CHECK(open.empty());
+      }
+}
+
 TEST_CASE("printed expressions, read again, have the same values, and so have their Euler-Lagrange equations") {
   const ExpressionNames given{.parameters = {{"c", 0.3}}};
   const JetVariables jets(given);

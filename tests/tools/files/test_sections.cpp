@@ -4,7 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/catch.hpp"
 #include "tests/tools/figures/has_gnuplot.hpp"
@@ -310,4 +316,96 @@ TEST_CASE("a file of another program without /field names what it has, and --dat
   const std::string scene = "'" + folder.write("small.ini", small_scene()) + "'";
   check_refused(delf_program(folder, "verify " + scene + " --fields other.h5 --out out"),
                 {"has no dataset /field", "--dataset u"});
+}
+
+namespace {
+
+/// The data items of an XDMF file that read HDF5: the shape and the place of each.
+struct SharedItem {
+  std::vector<std::size_t> shape;
+  std::string file, data_set;
+};
+std::vector<SharedItem> shared_items(const std::string& xdmf) {
+  const std::regex item("<DataItem Dimensions=\"([0-9 ]+)\"[^>]*Format=\"HDF\">([^:<]+):([^<]+)</DataItem>");
+  std::vector<SharedItem> items;
+  for (std::sregex_iterator found(xdmf.begin(), xdmf.end(), item), end; found != end; ++found) {
+    items.push_back({{}, (*found)[2], (*found)[3]});
+    std::istringstream shape((*found)[1]);
+    for (std::size_t n = 0; shape >> n;) items.back().shape.push_back(n);
+  }
+  return items;
+}
+
+/// All of the data set of an item, as the readers of XDMF take it.
+std::vector<double> values_of(const std::filesystem::path& folder, const SharedItem& item) {
+  std::size_t count = 1;
+  for (const std::size_t n : item.shape) count *= n;
+  const Hdf5Handle file(H5Fopen((folder / item.file).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Hdf5Handle set(H5Dopen2(file, item.data_set.c_str(), H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+  INFO(item.file << ":" << item.data_set);
+  REQUIRE(H5Sget_simple_extent_npoints(space) == static_cast<hssize_t>(count));
+  std::vector<double> values(count);
+  REQUIRE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("the XDMF of a lattice points into fields.h5, and has its values") {
+  const Folder folder;
+  const std::string scene = GENERATE(as<std::string>(), "kink --run.until=1", "coupled-sine-gordon --run.until=1",
+                                     "gauss-kink --run.until=1", "r-adaptive --run.steps=8");
+  INFO(scene);
+  REQUIRE(
+      delf_program(folder, "run " + scene + " --output.every=2 --output.xdmf=on --output.figures=off --out out").code ==
+      0);
+  const delf::FieldsReader rows(folder / "out/fields.h5");
+  const auto frames = static_cast<std::size_t>(rows.frames()), sites = static_cast<std::size_t>(rows.sites()),
+             d = static_cast<std::size_t>(rows.components());
+  const std::string xdmf = read(folder / "out/fields.xdmf") + read(folder / "out/surface.xdmf");
+  const std::vector<SharedItem> items = shared_items(xdmf);
+  std::map<std::string, std::vector<double>> values;
+  for (const SharedItem& item : items) values[item.data_set] = values_of(folder / "out", item);
+  const std::vector<std::string> names = rows.names();
+  for (std::size_t c = 0; c < d; ++c) {
+    const std::string name = names.empty() ? "phi" : names[c];
+    CHECK(contains(xdmf, "<Attribute Name=\"" + name + "\""));
+    for (std::size_t n = 0; n < frames; ++n) {
+      const std::vector<double> row = rows.row(static_cast<int>(n));
+      for (std::size_t i = 0; i < sites; ++i) {
+        CHECK(values.at("/" + name + "/" + std::to_string(n)).at(i) == row.at(i * d + c));
+        CHECK(values.at("/" + name + "/all").at(n * sites + i) == row.at(i * d + c));
+      }
+    }
+  }
+  if (scene.starts_with("gauss-kink")) {
+    CHECK(contains(xdmf, "<Attribute Name=\"phi at (0, 0.5)\""));
+    CHECK(values.at("/inner2/3").at(5) == rows.values(delf::Role::inner, 3).at(5 * 3 + 2));
+  }
+  if (scene.starts_with("r-adaptive")) {  // each site at its place, beside the time of its frame
+    const std::vector<double>& places = values.at("/places");
+    for (std::size_t n = 0; n < frames; ++n)
+      for (std::size_t i = 0; i < sites; ++i) {
+        CHECK(places.at(2 * (n * sites + i)) == values.at("/places_of_sites/" + std::to_string(n)).at(i));
+        CHECK(places.at(2 * (n * sites + i) + 1) == rows.time(static_cast<int>(n)).value());
+      }
+    CHECK(places[2 * (sites / 2)] != places[2 * ((frames - 1) * sites + sites / 2)]);  // they have moved
+  } else {
+    CHECK(values.at("/space") == rows.positions().value());
+    CHECK(values.at("/time").at(frames - 1) == rows.time(static_cast<int>(frames) - 1).value());
+  }
+  // nothing is copied
+  CHECK(std::filesystem::file_size(folder / "out/frames.h5") < 4000 * (frames + 2) * (d + 4));
+}
+
+TEST_CASE("XDMF is written where it is asked for and there is a space to show") {
+  const Folder folder;
+  REQUIRE(delf_program(folder, "run kink --run.until=1 --output.figures=off --out off").code == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "off/fields.xdmf"));
+  const Ran point =
+      delf_program(folder, "run pendulum --run.until=1 --output.xdmf=on --output.figures=off --out point");
+  CHECK(point.code == 0);
+  CHECK(contains(point.err, "a point has no space to show"));
+  CHECK_FALSE(std::filesystem::exists(folder / "point/fields.xdmf"));
 }

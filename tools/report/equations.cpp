@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "tools/equations.hpp"
+#include "tools/report/equations.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "jets/expressions/equations.hpp"
@@ -72,6 +74,34 @@ std::string displayed(const std::string& formula) {
                      fmt::join(lines, " \\\\\n  &\\quad"));
 }
 
+/// The letters of MathML that are seen: those outside of tags.
+std::size_t seen_letters(std::string_view mathml) {
+  std::size_t letters = 0;
+  bool in_tag = false;
+  for (const char c : mathml)
+    if (c == '<') in_tag = true;
+    else if (c == '>') in_tag = false;
+    else if (!in_tag && (c & 0xC0) != 0x80) ++letters;  // the first byte of each code point
+  return letters;
+}
+
+/// A displayed formula in MathML, broken between the terms that begin lines of its text.
+std::string displayed_in_mathml(const std::string& formula) {
+  constexpr std::size_t width = 90;  // of letters, most of which are small indices
+  std::vector<std::string> lines{""};
+  for (std::size_t begin = 0; begin < formula.size();) {
+    const std::size_t end = std::min(formula.find('\n', begin), formula.size());
+    const std::string term = formula.substr(begin, end - begin);
+    if (!lines.back().empty() && seen_letters(lines.back()) + seen_letters(term) > width) lines.emplace_back();
+    lines.back() += term;
+    begin = end + 1;
+  }
+  if (lines.size() == 1) return fmt::format("<math display=\"block\"><mrow>{}</mrow></math>", lines[0]);
+  std::string rows;
+  for (const std::string& line : lines) rows += fmt::format("<mtr><mtd><mrow>{}</mrow></mtd></mtr>", line);
+  return fmt::format("<math display=\"block\"><mtable displaystyle=\"true\">{}</mtable></math>", rows);
+}
+
 }  // namespace
 
 std::string equations_in_words(const Problem& p, const Simulation& simulation) {
@@ -117,6 +147,19 @@ std::string equations_in_latex(const Problem& p, const Simulation& simulation) {
   if (const StencilTable* table = table_of(p, simulation))
     for (const std::string& equation : discrete_field_equations(*density, *table, Notation::latex)) add(equation);
   return text;
+}
+
+std::optional<DisplayedEquations> equations_in_mathml(const Problem& p, const Simulation& simulation) {
+  const auto density = text_of(p, simulation);
+  if (!density) return std::nullopt;
+  DisplayedEquations shown{
+      displayed_in_mathml("<mi>ℓ</mi><mo>=</mo>" + density_formula(*density, Notation::mathml)), {}, {}};
+  for (const std::string& equation : field_equations(*density, Notation::mathml))
+    shown.of_fields.push_back(displayed_in_mathml(equation));
+  if (const StencilTable* table = table_of(p, simulation))
+    for (const std::string& equation : discrete_field_equations(*density, *table, Notation::mathml))
+      shown.discrete.push_back(displayed_in_mathml(equation));
+  return shown;
 }
 
 }  // namespace delf

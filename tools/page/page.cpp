@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+#include "tools/page/page.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/files/text_file.hpp"
+#include "tools/page/captions.hpp"
+#include "tools/page/citation.hpp"
+#include "tools/page/markup.hpp"
+#include "tools/page/numbers.hpp"
+#include "tools/page/page_figures.hpp"
+#include "tools/page/solved.hpp"
+#include "tools/page/verdict.hpp"
+#include "tools/report/machine.hpp"
+
+namespace delf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t most_bytes = 1000000;
+
+std::string verdict_boxes(const ResultFolder& folder) {
+  std::string html;
+  for (const PageVerdict& verdict : verdicts_of(folder))
+    html +=
+        fmt::format("<div class=\"verdict{}\"><p><strong>{}</strong> {}</p>\n{}</div>\n", verdict.good ? " good" : "",
+                    verdict.good ? "Good." : "Attention.", escaped(verdict.sentence), list(verdict.points));
+  return html;
+}
+
+std::string numbers_section(const ResultFolder& folder) {
+  PageTable t{"Numbers of the run", {"number", "value", "meaning", "worry when"}, {}};
+  for (const PageNumber& n : numbers_of(folder))
+    t.rows.push_back({n.name, n.value, n.meaning, n.worrying ? "beyond it here: " + n.worry : n.worry});
+  std::string html = table(t);
+  if (html.empty()) html = paragraph("There is no summary.json, which has the numbers of a run.");
+  return html;
+}
+
+std::string figure_html(const PageFigure& figure, const FigureCaption& caption, const std::string& beside) {
+  const std::string image =
+      figure.source.empty()
+          ? paragraph(
+                fmt::format("{} is too large for this page, or of a format that a browser does not draw.", figure.file))
+          : fmt::format("<img alt=\"{}\" src=\"{}\"/>\n", escaped(caption.title + beside), figure.source);
+  return fmt::format("<figure>\n{}<figcaption>{}.{} {}</figcaption>\n{}</figure>\n", image, escaped(caption.title),
+                     escaped(beside), escaped(caption.finding), details("The numbers as a table", caption.table));
+}
+
+std::string figures_section(const ResultFolder& folder, const std::vector<PageFigure>& figures) {
+  std::string html;
+  for (const PageFigure& figure : figures) html += figure_html(figure, caption_of(folder, figure.name), "");
+  return html.empty() ? paragraph("There are no figures: none were asked for, or gnuplot is missing.") : html;
+}
+
+std::string verification_section(const ResultFolder& folder) {
+  const Json* verify = folder.result("verify");
+  std::string html = table_of("Checks: each sum is zero in theory, and is divided by its absolute terms",
+                              {{"check", "name"},
+                               {"passed", "passed"},
+                               {"largest", "value"},
+                               {"tolerance", "tolerance"},
+                               {"count", "count"},
+                               {"where", "region"}},
+                              list_in(verify, "checks"));
+  html += table_of("Measured, but not promised",
+                   {{"quantity", "name"}, {"value", "value"}, {"order in h", "order"}, {"where", "region"}},
+                   list_in(verify, "measured"));
+  html += table_of("Quantities that symmetries conserve, and energies of the scheme itself",
+                   {{"quantity", "name"}, {"row 0", "initial"}, {"last row", "final"}, {"largest change", "error_max"}},
+                   list_in(folder.result("summary"), "conserved"));
+  if (const auto left_out = texts_in(verify, "left_out"); !left_out.empty())
+    html += paragraph("Left out:") + list(left_out);
+  if (!verify) html += paragraph("These rows have not been verified here. `delf verify scene.ini` does it.");
+  return html;
+}
+
+std::string monitors_section(const ResultFolder& folder) {
+  PageTable t{"Columns of series.csv", {"column", "first", "least", "largest", "last"}, {}};
+  for (std::size_t c = 2; c < folder.series.size(); ++c) {
+    std::vector<double> values = folder.series[c];
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });
+    if (values.empty()) continue;
+    const auto [least, most] = std::ranges::minmax(values);
+    t.rows.push_back({folder.series_names[c], number_text(values.front()), number_text(least), number_text(most),
+                      number_text(values.back())});
+  }
+  const std::string html = table(t) + details("Some rows of series.csv", csv_table(folder, "series.csv", 31));
+  return html.empty() ? paragraph("There is no series.csv, which has a line for each recorded row.") : html;
+}
+
+std::string again_section(const ResultFolder& folder) {
+  if (folder.scene.empty()) return paragraph("There is no scene.ini here, so no command can be given.");
+  static const std::vector<std::pair<std::string, std::string>> commands{{"verify", "verify"},
+                                                                         {"convergence", "convergence"},
+                                                                         {"workprecision", "workprecision"},
+                                                                         {"stability", "stability"}};
+  std::string text;
+  if (folder.result("summary") || folder.results.empty()) text = "delf run scene.ini\n";
+  for (const auto& [result, command] : commands)
+    if (const Json* json = folder.result(result)) {
+      const std::string rows = text_in(json, "subject");  // of a verification
+      text += fmt::format("delf {} scene.ini{}\n", command,
+                          rows.empty() || rows == "rows computed here" ? "" : " --fields FILE");
+    }
+  if (const Json* sweep = folder.result("sweep")) {
+    text += "delf sweep scene.ini";
+    for (const std::string& key : texts_in(sweep, "keys")) text += fmt::format(" --{}=…", key);
+    text += "\n";
+  }
+  return paragraph(
+             "scene.ini has every key in force. On the same machine and build it gives the same rows, to the bit.") +
+         code_block("The command", text) + code_block("scene.ini", folder.scene);
+}
+
+std::string made_section(const ResultFolder& folder) {
+  PageTable t{"Program and machine", {}, {}};
+  const auto add = [&](const std::string& name, const std::string& value) {
+    if (!value.empty()) t.rows.push_back({name, value});
+  };
+  for (const std::string& kind : ResultFolder::kinds())
+    if (const Json* json = folder.result(kind)) {
+      add(kind + ".json: version of delf", text_in(json, "version"));
+      add(kind + ".json: machine", text_in(json, "machine"));
+      add(kind + ".json: compiler and flags", text_in(json, "compiler"));
+      add(kind + ".json: seed", value_text(json, "seed"));
+    }
+  add("this page: version of delf", DELF_VERSION);
+  add("this page: machine", machine_in_words());
+  add("this page: compiler and flags", compiler_in_words());
+  return table(t);
+}
+
+std::string files_section(const ResultFolder& folder) {
+  PageTable t{"Files of the folder", {"file", "bytes", "SHA-256"}, {}};
+  for (const ResultFolder::File& file : folder.files)
+    t.rows.push_back(
+        {file.name, fmt::to_string(file.bytes), file.sha256.empty() ? "not found: sha256sum is missing" : file.sha256});
+  std::string html = table(t);
+  if (folder.further_files > 0) html += paragraph(fmt::format("There are {} more files.", folder.further_files));
+  return html + (folder.missing.empty() ? "" : "<h3>Missing</h3>\n" + list(folder.missing));
+}
+
+/// The keys in which the scenes of several folders differ.
+std::string differences(const std::vector<ResultFolder>& folders) {
+  PageTable t{"Keys that differ", {"key"}, {}};
+  std::set<std::string> keys;
+  for (const ResultFolder& folder : folders) {
+    t.headings.push_back(folder.path.string());
+    for (const auto& [key, value] : folder.keys) keys.insert(key);
+  }
+  for (const std::string& key : keys) {
+    std::vector<std::string> row{key};
+    for (const ResultFolder& folder : folders) {
+      const auto found = folder.keys.find(key);
+      row.push_back(found == folder.keys.end() ? "not given" : found->second);
+    }
+    if (std::ranges::count(row, row[1]) != static_cast<std::ptrdiff_t>(folders.size())) t.rows.push_back(row);
+  }
+  return t.rows.empty() ? paragraph("The scenes have the same keys.") : table(t);
+}
+
+std::string numbers_beside(const std::vector<ResultFolder>& folders) {
+  PageTable t{"Numbers side by side", {"number"}, {}};
+  std::vector<std::vector<PageNumber>> all;
+  for (const ResultFolder& folder : folders) {
+    t.headings.push_back(folder.path.string());
+    all.push_back(numbers_of(folder));
+    for (const PageNumber& n : all.back())
+      if (std::ranges::none_of(t.rows, [&](const auto& row) { return row[0] == n.name; })) t.rows.push_back({n.name});
+  }
+  for (auto& row : t.rows)
+    for (const auto& numbers : all) {
+      const auto found = std::ranges::find(numbers, row[0], &PageNumber::name);
+      row.push_back(found == numbers.end() ? "" : found->value);
+    }
+  return table(t);
+}
+
+std::string figures_beside(const std::vector<ResultFolder>& folders,
+                           const std::vector<std::vector<PageFigure>>& figures) {
+  std::vector<std::string> names;
+  for (const ResultFolder& folder : folders)
+    for (const std::string& name : folder.figures)
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  std::string html;
+  for (const std::string& name : names) {
+    html += "<div class=\"pair\">\n";
+    for (std::size_t f = 0; f < folders.size(); ++f)
+      for (const PageFigure& figure : figures[f])
+        if (figure.name == name)
+          html += figure_html(figure, caption_of(folders[f], name), fmt::format(" ({})", folders[f].path.string()));
+    html += "</div>\n";
+  }
+  return html;
+}
+
+/// A part of a page: the end of its id, its heading, and its contents.
+struct Part {
+  std::string id, heading, html;
+};
+
+std::string with_contents(const std::vector<Part>& parts) {
+  std::string links, html;
+  for (const Part& part : parts) {
+    links += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", escaped(part.id), escaped(part.heading));
+    html += section(part.id, part.heading, part.html);
+  }
+  return fmt::format("<nav aria-label=\"Contents\"><ul>\n{}</ul></nav>\n{}", links, html);
+}
+
+std::string page_with(const std::vector<ResultFolder>& folders, const std::vector<std::vector<PageFigure>>& figures) {
+  std::vector<Part> parts;
+  std::string title, lead;
+  const bool several = folders.size() > 1;
+  if (several) {
+    title = "Runs side by side";
+    for (const ResultFolder& folder : folders)
+      lead += fmt::format("<h3>{}</h3>\n", escaped(folder.path.string())) + verdict_boxes(folder);
+    lead = section("verdict", "Verdicts", lead);
+    parts = {{"differences", "Differences", differences(folders)},
+             {"numbers", "Numbers", numbers_beside(folders)},
+             {"figures", "Figures", figures_beside(folders, figures)}};
+  } else {
+    title = fmt::format("{}: results of delf", folders[0].name);
+    lead = section("verdict", "Verdict", verdict_boxes(folders[0]));
+  }
+  for (std::size_t f = 0; f < folders.size(); ++f) {
+    const ResultFolder& folder = folders[f];
+    const SolvedProblem solved = solved_problem(folder);
+    const std::string id = several ? fmt::format("run-{}-", f + 1) : "",
+                      of = several ? " of " + folder.path.string() : "";
+    const auto add = [&](const char* own, const char* heading, std::string html) {
+      parts.push_back({id + own, heading + of, std::move(html)});
+    };
+    add("solved", "Problem", solved.what);
+    add("scheme", "Scheme", solved.how);
+    if (!several) add("numbers", "Numbers", numbers_section(folder));
+    if (!several) add("figures", "Figures", figures_section(folder, figures[f]));
+    add("verification", "Verification", verification_section(folder));
+    add("monitors", "Monitors", monitors_section(folder));
+    add("again", "Scene and command", again_section(folder));
+    add("made", "Program and machine", made_section(folder));
+    add("files", "Files", files_section(folder));
+  }
+  parts.push_back(
+      {"cite", "Citation",
+       paragraph("Cite the program, and the paper whose construction it generalises, as CITATION.cff says:") +
+           code_block("CITATION.cff", citation)});
+  return document(title, fmt::format("<main>\n<h1>{}</h1>\n{}{}</main>\n", escaped(title), lead, with_contents(parts)));
+}
+
+}  // namespace
+
+std::string page_of(const std::vector<fs::path>& paths) {
+  const std::vector<ResultFolder> folders(paths.begin(), paths.end());
+  // Figures have the room that the rest of the page leaves.
+  const std::size_t rest = page_with(folders, page_figures(folders, 0)).size();
+  return page_with(folders, page_figures(folders, most_bytes - std::min(rest, most_bytes)));
+}
+
+ExitCode write_page(const std::vector<fs::path>& folders, const std::optional<std::string>& out) {
+  const fs::path file = out                   ? fs::path(*out)
+                        : folders.size() == 1 ? folders[0] / "report.html"
+                                              : fs::path("report.html");
+  const std::string page = page_of(folders);
+  write_text_file(file, page);
+  fmt::print("{}: {} bytes\n", file.string(), page.size());
+  return ExitCode::done;
+}
+
+}  // namespace delf
