@@ -109,7 +109,7 @@ class MeshVerification {
       }
       // Frame f + 1 has those of row f, which they were found with; the last row of a window has none.
       std::vector<double> multipliers = multipliers_of(file, name, first + 1, last - first);
-      if (!multipliers.empty()) multipliers.resize(multipliers.size() + scene_.space->mesh.points.size(), 0.0);
+      if (!multipliers.empty()) multipliers.resize(multipliers.size() + scene_.space->multipliers_of_row(), 0.0);
       look_at_rows_of(SpaceRows(*scene_.space, times), rows, multipliers, fmt::format("frames {} to {}", first, last));
     }
     if (Interrupt::asked()) verdict_.status = "interrupted";
@@ -119,11 +119,11 @@ class MeshVerification {
   std::vector<double> multipliers_of(const FieldsReader& file, const std::string& name, int first, int count) const {
     const auto [frames, sites, components] = file.shape(Role::multiplier);
     if (!scene_.theory->constraint() || frames == 0) return {};
-    if (frames != file.frames() || sites != scene_.sites() || components != 1)
+    if (frames != file.frames() || sites != scene_.sites() || components != scene_.space->constraints())
       throw BadScene(
           fmt::format("command line: --fields: {}: /multiplier is {} x {} x {}; write frames x sites x components = {} "
-                      "x {} x 1, or leave it out",
-                      name, frames, sites, components, file.frames(), scene_.sites()));
+                      "x {} x {}, or leave it out",
+                      name, frames, sites, components, file.frames(), scene_.sites(), scene_.space->constraints()));
     std::vector<double> all;
     for (int f = first; f < first + count; ++f) {
       const std::vector<double> one = file.values(Role::multiplier, f);
@@ -304,6 +304,12 @@ class MeshVerification {
     Problem problem = scene_.problem_on_mesh();
     if (forth.evolution().system().families().front()->is_placed())
       problem = mirrored_in_time(std::move(problem), forth.time(there));
+    if (scene_.boundary_works()) {
+      auto space = std::make_shared<MeshSpace>(*scene_.space);
+      for (auto* list : {&space->driven, &space->fluxes})
+        for (auto& [point, given] : *list) given = std::make_shared<BackFrom>(forth.time(there), given);
+      problem.lattice = Lattice::on(std::move(space));
+    }
     if (!problem.time_steps.empty()) problem.time_steps.assign(lengths_.rbegin(), lengths_.rend());
     Simulation again(problem);
     again.start({forth.evolution().stepper().row(0), forth.evolution().stepper().row(1)}, forth.step_density());
@@ -319,6 +325,9 @@ class MeshVerification {
     double distance = 0, size = 0;
     for (std::size_t n = 0; n < goal.size(); ++n)
       distance = std::max(distance, std::abs(goal[n] - reached[n])), size = std::max(size, std::abs(goal[n]));
+    // a field that something sets off may begin at rest
+    if (scene_.boundary_works())
+      for (const double phi : forth.evolution().stepper().row(0)) size = std::max(size, std::abs(phi));
     Balance balance{distance, std::max(size, 1e-300), static_cast<std::int64_t>(goal.size())};
     reversal_.take(balance, fmt::format("{} steps back", back));
     if (!reversal_.passed()) reversal_.failure = "the steps back do not retrace the steps forth";
