@@ -17,16 +17,17 @@ Vector unit(const Vector& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
 
 /// The point with N_l and its derivatives by the cell's own coordinates ξ, η. With tangents g_ξ = Σ x_l ∂_ξN_l and g_η:
 /// e₁ = g_ξ/|g_ξ|, e₂ ⟂ e₁; ∂_aN = Σ_b (G⁻¹)_ba ∂_bN, G_ba = g_b·e_a.
-CellPoint placed(const Mesh& mesh, std::span<const std::int32_t> corners, double weight, std::vector<double> value,
+CellPoint placed(const Mesh& mesh, int cell, double weight, std::vector<double> value,
                  const std::vector<std::vector<double>>& by_own) {
+  const std::size_t corners = value.size();
   std::vector<Vector> g(by_own.size(), Vector{});
   for (std::size_t b = 0; b < g.size(); ++b)
-    for (std::size_t l = 0; l < corners.size(); ++l)
-      for (std::size_t k = 0; k < 3; ++k) g[b][k] += by_own[b][l] * mesh.points[corners[l]][k];
+    for (std::size_t l = 0; l < corners; ++l)
+      for (std::size_t k = 0; k < 3; ++k) g[b][k] += by_own[b][l] * mesh.corner(cell, l)[k];
   const Vector e1 = unit(g[0]);
   const double g11 = dot(g[0], e1);
   CellPoint point{weight * g11, std::move(value), {}};
-  std::vector<double> first(corners.size()), second(corners.size());
+  std::vector<double> first(corners), second(corners);
   if (g.size() == 1) {
     for (std::size_t l = 0; l < first.size(); ++l) first[l] = by_own[0][l] / g11;
     point.slopes = {first};
@@ -48,14 +49,14 @@ CellPoint placed(const Mesh& mesh, std::span<const std::int32_t> corners, double
 }  // namespace
 
 std::vector<CellPoint> cell_points(const Mesh& mesh, int cell) {
-  const auto corners = mesh.cell(cell);
-  if (corners.size() == 2) return {placed(mesh, corners, 1, {0.5, 0.5}, {{-1, 1}})};
-  if (corners.size() == 3) return {placed(mesh, corners, 0.5, {1. / 3, 1. / 3, 1. / 3}, {{-1, 1, 0}, {-1, 0, 1}})};
+  const std::size_t corners = mesh.cell(cell).size();
+  if (corners == 2) return {placed(mesh, cell, 1, {0.5, 0.5}, {{-1, 1}})};
+  if (corners == 3) return {placed(mesh, cell, 0.5, {1. / 3, 1. / 3, 1. / 3}, {{-1, 1, 0}, {-1, 0, 1}})};
   std::vector<CellPoint> points;  // Gauss, 2 × 2 points of the unit square
   const double a = 0.5 - std::sqrt(3.0) / 6;
   for (const double u : {a, 1 - a})
     for (const double v : {a, 1 - a})
-      points.push_back(placed(mesh, corners, 0.25, {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v},
+      points.push_back(placed(mesh, cell, 0.25, {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v},
                               {{-(1 - v), 1 - v, v, -v}, {-(1 - u), -u, u, 1 - u}}));
   return points;
 }

@@ -40,10 +40,16 @@ std::vector<Side> sorted_sides(const Mesh& mesh) {
 }
 
 /// Twice the area of the triangle at a corner of a cell, with the sign of its orientation in a plane.
-Point corner_area(const Mesh& mesh, std::span<const std::int32_t> corners, std::size_t n) {
-  const std::size_t m = corners.size();
-  const Point& p = mesh.points[corners[n]];
-  return cross(between(p, mesh.points[corners[(n + 1) % m]]), between(p, mesh.points[corners[(n + m - 1) % m]]));
+Point corner_area(const Mesh& mesh, int cell, std::size_t n) {
+  const std::size_t m = mesh.cell(cell).size();
+  const Point& p = mesh.corner(cell, n);
+  return cross(between(p, mesh.corner(cell, (n + 1) % m)), between(p, mesh.corner(cell, (n + m - 1) % m)));
+}
+
+/// The place of a point, as one of its cells has it.
+const Point& place_in_cell(const Mesh& mesh, int cell, std::int32_t point) {
+  const auto corners = mesh.cell(cell);
+  return mesh.corner(cell, at(std::ranges::find(corners, point) - corners.begin()));
 }
 
 class FaultFinder {
@@ -107,15 +113,15 @@ class FaultFinder {
     constexpr double flat = 1e-12;  // of an area, relative to the longest side's square
     double longest = 0;
     for (std::size_t n = 0; n < m; ++n)
-      longest = std::max(longest, norm(between(mesh_.points[corners[n]], mesh_.points[corners[(n + 1) % m]])));
+      longest = std::max(longest, norm(between(mesh_.corner(c, n), mesh_.corner(c, (n + 1) % m))));
     if (!(longest > 0) || !std::isfinite(longest))
       return fault_of(c, "is degenerate: its corners are one point; move or remove it");
     if (m == 2) return std::nullopt;
     Point mean{};
     for (std::size_t n = 0; n < m; ++n)
-      for (std::size_t k = 0; k < 3; ++k) mean[k] += corner_area(mesh_, corners, n)[k];
+      for (std::size_t k = 0; k < 3; ++k) mean[k] += corner_area(mesh_, c, n)[k];
     for (std::size_t n = 0; n < m; ++n) {
-      const Point area = corner_area(mesh_, corners, n);
+      const Point area = corner_area(mesh_, c, n);
       if (norm(area) <= flat * longest * longest)
         return fault_of(c, "is degenerate: three corners lie on a line; move or remove it");
       if (flat_ && m == 3 && area[2] < 0) return fault_of(c, "is listed clockwise; list its points the other way");
@@ -152,7 +158,7 @@ class FaultFinder {
     std::sort(points.begin(), points.end(), [&](auto a, auto b) { return std::pair(x(a), a) < std::pair(x(b), b); });
     points.erase(std::unique(points.begin(), points.end()), points.end());
     for (const Side& s : outer) {
-      const Point &a = mesh_.points[s.low], &b = mesh_.points[s.high];
+      const Point &a = place_in_cell(mesh_, s.cell, s.low), &b = place_in_cell(mesh_, s.cell, s.high);
       const Point along = between(a, b);
       const double length2 = dot(along, along), slack = 1e-9 * std::sqrt(length2);
       const double low = std::min(a[0], b[0]) - slack, high = std::max(a[0], b[0]) + slack;
@@ -183,7 +189,7 @@ int Mesh::coordinates() const {
 
 double measure(const Mesh& mesh, int cell) {
   const auto corners = mesh.cell(cell);
-  const auto point = [&](std::size_t n) -> const Point& { return mesh.points[corners[n]]; };
+  const auto point = [&](std::size_t n) -> const Point& { return mesh.corner(cell, n); };
   if (corners.size() == 2) return norm(between(point(0), point(1)));
   Point twice{};
   for (std::size_t n = 1; n + 1 < corners.size(); ++n)
@@ -196,8 +202,7 @@ double shortest_edge(const Mesh& mesh, int cell) {
   const auto corners = mesh.cell(cell);
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < corners.size(); ++n)
-    shortest =
-        std::min(shortest, norm(between(mesh.points[corners[n]], mesh.points[corners[(n + 1) % corners.size()]])));
+    shortest = std::min(shortest, norm(between(mesh.corner(cell, n), mesh.corner(cell, (n + 1) % corners.size()))));
   return shortest;
 }
 
@@ -232,6 +237,23 @@ std::vector<std::int32_t> boundary_points(const Mesh& mesh) {
   std::ranges::sort(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
+}
+
+std::vector<std::pair<std::int32_t, double>> side_shares(const Mesh& mesh,
+                                                         std::span<const std::array<std::int32_t, 2>> sides) {
+  std::map<std::int32_t, double> shares;
+  const std::vector<Side> all = mesh.dimension == 1 ? std::vector<Side>() : sorted_sides(mesh);
+  for (const auto& [a, b] : sides) {
+    if (a == b) {
+      shares[a] += 1;
+      continue;
+    }
+    const std::pair ends(std::min(a, b), std::max(a, b));
+    const auto side = std::ranges::lower_bound(all, ends, {}, [](const Side& s) { return std::pair(s.low, s.high); });
+    const double half = 0.5 * norm(between(place_in_cell(mesh, side->cell, a), place_in_cell(mesh, side->cell, b)));
+    shares[a] += half, shares[b] += half;
+  }
+  return {shares.begin(), shares.end()};
 }
 
 std::vector<char> held_points(const Mesh& mesh, bool otherwise, std::span<const PartCondition> conditions) {

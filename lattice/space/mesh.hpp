@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lattice/index.hpp"
@@ -20,6 +21,9 @@ struct Mesh {
   int dimension = 2;  ///< of the cells: 1, or 2
   std::vector<Point> points;
   std::vector<std::int32_t> first{0}, vertices;
+  /// The places of the corners, in the order of `vertices`, where points that lie apart were joined (joined()): a cell at the
+  /// seam has a corner on the other side. Empty: those of the points.
+  std::vector<Point> places = {};
   /// A part of the boundary that has a name: its sides (a, b), or the points (p, p) of a mesh of segments.
   struct Part {
     std::string name;
@@ -43,6 +47,11 @@ struct Mesh {
     const std::size_t i = c;
     return {vertices.data() + first[i], at(first[i + 1] - first[i])};
   }
+  /// Corner l of a cell.
+  const Point& corner(int c, std::size_t l) const {
+    const std::size_t n = at(first[at(c)]) + l;
+    return places.empty() ? points[at(vertices[n])] : places[n];
+  }
   void add_cell(std::span<const std::int32_t> corners) {
     vertices.insert(vertices.end(), corners.begin(), corners.end());
     first.push_back(static_cast<std::int32_t>(vertices.size()));
@@ -61,6 +70,11 @@ double shortest_edge(const Mesh&, int cell);
 std::vector<std::array<std::int32_t, 2>> boundary_sides(const Mesh&);
 /// Points on the boundary, each once, in order: ends of curves, and points of sides that only one cell has.
 std::vector<std::int32_t> boundary_points(const Mesh&);
+
+/// ∫ N_i ds of each point over some sides of the boundary, each point once and in order: half the lengths of its sides, and 1 at
+/// the end of a curve.
+std::vector<std::pair<std::int32_t, double>> side_shares(const Mesh&,
+                                                         std::span<const std::array<std::int32_t, 2>> sides);
 
 /// A condition at the sides of a part: their points are held, or free.
 struct PartCondition {

@@ -15,35 +15,39 @@ namespace delf {
 
 /// A mesh of space and a density on it, with what problems on it have in common.
 struct CellSpace : MeshSpace {
-  /// `constraint`: of d + 1 values at a vertex, as a theory declares it. Throws BadInput for a density that has no form on
+  /// `constraint`: of d + m values at a vertex, as a theory declares it. Throws BadInput for a density that has no form on
   /// cells.
   CellSpace(Mesh, std::shared_ptr<const BatchDensity>, bool fixed_boundary,
             std::shared_ptr<const StencilFamily> constraint = nullptr);
 
   int sites() const { return static_cast<int>(mesh.points.size()); }
   int fields() const { return density->components(); }
-  /// Values of a row: the fields, point by point; and behind them the multipliers, where there is a constraint.
+  /// m, each with a multiplier.
+  int constraints() const { return constraint ? constraint->size() - fields() : 0; }
+  /// Values of a row: the fields, point by point; and behind them the multipliers, where there are constraints.
   std::size_t fields_of_row() const { return mesh.points.size() * at(fields()); }
-  std::size_t values_of_row() const { return fields_of_row() + (constraint ? mesh.points.size() : 0); }
-  /// use(i, G, ∂G/∂φ) at fields[i·d + a], site after site.
+  std::size_t values_of_row() const { return fields_of_row() + multipliers_of_row(); }
+  std::size_t multipliers_of_row() const { return mesh.points.size() * at(constraints()); }
+  /// use(i, G, ∂G/∂φ) at fields[i·d + a], site after site, and constraint after constraint at a site.
   using UseConstraint = std::function<void(std::size_t i, double G, std::span<const double> slopes)>;
   void each_constraint(std::span<const double> fields, const UseConstraint& use) const;
   /// The largest |G(φ)| of some fields.
   double largest_constraint(std::span<const double> fields) const;
 
   std::shared_ptr<const BatchDensity> density;
-  std::shared_ptr<const StencilFamily> constraint;  ///< of d + 1 values at one vertex, λ the last of them; null: none
+  std::shared_ptr<const StencilFamily>
+      constraint;  ///< of d + m values at one vertex, the λ the last of them; null: none
   SpaceTables tables;
   std::vector<double> masses;  ///< A_i
 };
 
 /// The potential of a mesh on rows of a complex, whose stencils have the measure of their row,
 ///
-///     Σ_i A_i V(φ_i) + Σ_cells [V(φ, ∇φ) − V(φ, 0)],
+///     Σ_i A_i V(φ_i) + Σ_cells [V(φ, ∇φ) − V(φ, 0)] + Σ_i f_i φ_i,
 ///
-/// and with a constraint A_i λ_i G(φ_i) besides. Then every value is a site of the complex of its own, since equations of one
-/// point are not matched with its own unknowns. A row has the sites of the fields, point by point, and behind them those of
-/// the multipliers, where there are any.
+/// f being what flows in at the boundary, and with constraints A_i Σ_m λ_im G_m(φ_i) besides. Then every value is a site of the
+/// complex of its own, since equations of one point are not matched with its own unknowns. A row has the sites of the fields,
+/// point by point, and behind them those of the multipliers, where there are any.
 class PotentialRows {
  public:
   /// `weights`: the λ_i G have A_i, and not 1.
@@ -57,6 +61,8 @@ class PotentialRows {
   void add(double t, double measure);
   int per_point() const { return per_point_; }  ///< sites that hold the fields of a point
   int per_row() const { return per_row_; }
+  /// The point that a site of a row belongs to.
+  int point_of(int site) const;
   /// The sites that hold the fields of some points in a row, appended.
   void append_sites(int row, std::span<const std::int32_t> points, std::vector<int>& sites) const;
 
@@ -66,6 +72,7 @@ class PotentialRows {
   bool weights_;
   int per_point_, per_row_, rows_ = 0;
   int site_ = 0, constraint_ = 0;     ///< families
+  std::vector<int> flux_;             ///< families of ℓ = φ_a, by field
   std::vector<int> gradient_;         ///< the family of each cell
   std::vector<int> gradient_tables_;  ///< of each cell
 };

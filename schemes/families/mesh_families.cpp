@@ -10,6 +10,7 @@
 #include "jets/tables/cell_points.hpp"
 #include "jets/tables/table_product.hpp"
 #include "lattice/index.hpp"
+#include "schemes/families/boundary_flux.hpp"
 #include "schemes/families/jet_family.hpp"
 
 namespace delf {
@@ -69,7 +70,7 @@ std::shared_ptr<const StencilFamily> on_cells(const StencilTable& time,
     for (const CellPoint& q : cell_points(mesh, c)) {
       const auto measure = static_cast<int>(numbers.size());
       double place = 0;
-      for (int l = 0; l < corners; ++l) place += q.value[l] * mesh.points[cell[l]][0];
+      for (int l = 0; l < corners; ++l) place += q.value[l] * mesh.corner(c, at(l))[0];
       numbers.insert(numbers.end(), {q.weight, place});
       numbers.insert(numbers.end(), q.value.begin(), q.value.end());
       for (const std::vector<double>& slope : q.slopes) {
@@ -107,6 +108,8 @@ std::vector<std::shared_ptr<const StencilFamily>> mesh_families(const StencilTab
   std::vector<std::shared_ptr<const StencilFamily>> families{on_sites(time, density, space.mesh, values_are_sources)};
   for (const int corners : {2, 3, 4})
     if (auto family = on_cells(time, density, space.mesh, corners)) families.push_back(std::move(family));
+  if (auto flux = boundary_flux(time, density->components(), static_cast<int>(space.mesh.points.size()), space.fluxes))
+    families.push_back(std::move(flux));
   return families;
 }
 

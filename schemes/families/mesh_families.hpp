@@ -16,7 +16,8 @@ namespace delf {
 ///     S = Σ_i A_i Σ_q w_q h ℓ(φ, φ_t, 0)  +  Σ_K Σ_p |K| w_p Σ_q w_q h Σ_a [V(φ, ∂_aφ) − V(φ, 0)]
 ///
 /// with the lumped masses A_i, and the points p of linear or bilinear cells. One family is of the sites, and one of the
-/// cells of each number of corners; a gradient of two components is two points, whose φ_x are its components.
+/// cells of each number of corners; a gradient of two components is two points, whose φ_x are its components. The last
+/// family is of what flows in at the boundary, if anything does.
 std::vector<std::shared_ptr<const StencilFamily>> mesh_families(const StencilTable& time,
                                                                 const std::shared_ptr<const BatchDensity>&,
                                                                 const MeshSpace&, bool values_are_sources = false);

@@ -15,9 +15,11 @@
 #include "jets/simd/exact_sum.hpp"
 #include "jets/simd/pack_gather.hpp"
 #include "jets/simd/scratch_rows.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "lattice/index.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/driven_points.hpp"
 #include "schemes/system/momenta.hpp"
 
 namespace delf {
@@ -27,6 +29,12 @@ constexpr int rows_held = 5, strip = 256;
 
 double* numbers(std::vector<Pack>& packs) { return reinterpret_cast<double*>(packs.data()); }
 const double* numbers(const std::vector<Pack>& packs) { return reinterpret_cast<const double*>(packs.data()); }
+
+/// The number of a listed stencil's own that is its place.
+int place_number(const StencilFamily& family) {
+  const DensityOnTable* const of = family.made_of();
+  return of == nullptr ? -1 : of->table.points.front().own.place;
+}
 
 }  // namespace
 
@@ -62,6 +70,8 @@ struct KickStepper::Parts {
   bool add(const LatticeSystem&, const StencilFamily&, int anchor, const std::vector<Value>&);
   bool add_sources(const LatticeSystem&, const StencilFamily&, int anchor, const std::vector<Value>&,
                    std::map<std::pair<int, int>, std::size_t>& known);
+  Source new_source(const LatticeSystem&, const StencilFamily&, int group) const;
+  void keep_some(Source&) const;
   Kick kick(std::initializer_list<int> nodes) const;
   bool is_symmetric() const;
 };
@@ -96,6 +106,32 @@ bool KickStepper::Parts::add(const LatticeSystem& system, const StencilFamily& f
   return true;
 }
 
+KickStepper::Source KickStepper::Parts::new_source(const LatticeSystem& system, const StencilFamily& family,
+                                                   int group) const {
+  Source source{&family, group, Packs(at(fields * padded / lanes), Pack(0.0)), {}, {}};
+  if (!family.is_placed()) return source;
+  // Sites without a stencil, and what packs are padded with, read a place where the density has a value.
+  const double any = family.listed() ? family.own_number(place_number(family), 0) : system.lattice().position(0);
+  source.x.assign(at(padded / lanes), Pack(any));
+  return source;
+}
+
+/// The weights and places of the sites of a family that is of a few of them alone.
+void KickStepper::Parts::keep_some(Source& source) const {
+  const ListedStencils* const listed = source.family->listed();
+  if (listed == nullptr || listed->size() >= sites) return;
+  for (int s = 0; s < listed->size(); ++s) source.sites.push_back(listed->site(s, 0));
+  const std::size_t own = source.sites.size(), all = (own + lanes - 1) / lanes * lanes;
+  source.sites.resize(all, source.sites.front());
+  Packs weights(at(fields) * all / lanes, Pack(0.0)), x(source.x.empty() ? 0 : all / lanes, Pack(0.0));
+  for (std::size_t n = 0; n < all; ++n) {
+    for (int a = 0; a < fields && n < own; ++a)
+      numbers(weights)[at(a) * all + n] = numbers(source.weights)[place(source.sites[n], a)];
+    if (!x.empty()) numbers(x)[n] = numbers(source.x)[source.sites[n]];
+  }
+  source.weights = std::move(weights), source.x = std::move(x);
+}
+
 bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilFamily& family, int anchor,
                                      const std::vector<Value>& values,
                                      std::map<std::pair<int, int>, std::size_t>& known) {
@@ -128,8 +164,11 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
           return false;
         std::vector<Source>& list = sources[v.node];
         const auto [found, fresh] = known.try_emplace({v.node, g}, list.size());
-        if (fresh) list.push_back({&family, g, Packs(at(fields * padded / lanes), Pack(0.0))});
-        numbers(list[found->second].weights)[v.place] += hk * weight * family.own_number(group.own, anchor);
+        if (fresh) list.push_back(new_source(system, family, g));
+        Source& source = list[found->second];
+        if (family.is_placed() && family.listed())
+          numbers(source.x)[v.place % padded] = family.own_number(place_number(family), anchor);
+        numbers(source.weights)[v.place] += hk * weight * family.own_number(group.own, anchor);
       }
   }
   return true;
@@ -151,6 +190,7 @@ KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const 
         for (std::size_t p = 0; p < source.weights.size(); ++p) same->weights[p] += source.weights[p];
     }
   }
+  for (Source& source : kick.sources) keep_some(source);
   auto next = K.begin();
   for (int pack = 0; pack < fields * padded; pack += lanes) {
     const auto begin = static_cast<int>(kick.value.size());
@@ -235,10 +275,6 @@ KickStepper::KickStepper(const LatticeSystem& system, const StepOptions& options
     for (int place = 0; place < fields_ * padded_; ++place)
       if (const double M = parts.mass[node][place]; M != 0) numbers(inverse_.back())[place] = 1 / M;
   }
-  if (std::ranges::any_of(system.families(), [](const auto& family) { return family->is_placed(); })) {
-    x_.assign(padded_ / lanes, Pack(0.0));
-    for (int i = 0; i < padded_; ++i) numbers(x_)[i] = system.lattice().position(std::min(i, parts.sites - 1));
-  }
   ring_.assign(rows_held * nodes_, {Packs(packs, Pack(0.0)), Packs(packs, Pack(0.0))});
   std::iota(slots_.begin(), slots_.end(), 0);
   momentum_.assign(packs, Pack(0.0));
@@ -251,15 +287,34 @@ std::size_t KickStepper::index(std::int64_t row, int node) const {
   return at(slots_[back] * nodes_ + node);
 }
 
+/// P ← P + κ w N′(y) at some sites.
+void KickStepper::kick_some(const Source& source, double of_kick, double t, const double* from, double* P) const {
+  const int all = static_cast<int>(source.sites.size());
+  for (int first = 0; first < all; first += strip) {
+    const int count = std::min(strip, all - first);
+    const ScratchRows y(fields_, count), slope(fields_, count);
+    for (int a = 0; a < fields_; ++a)
+      for (int n = 0; n < count; ++n) y[a][n] = from[a * padded_ + source.sites[at(first + n)]];
+    source.family->evaluate_sources(
+        source.group, {count, y.data(), t, source.x.empty() ? nullptr : numbers(source.x) + first}, slope.data());
+    for (int a = 0; a < fields_; ++a)
+      for (int n = 0; n < count; ++n)
+        P[a * padded_ + source.sites[at(first + n)]] +=
+            of_kick * numbers(source.weights)[a * all + first + n] * slope[a][n];
+  }
+}
+
 /// P ← P + κ (K y + c + w N′(y)),   y′ = y + δ M⁻¹ P, strip by strip, with κ and δ as they are given.
 void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double of_drift, double t, Node& next) {
   const Node& here = node(newest_, n);
   const double *const from = numbers(here.y), *const from_low = numbers(here.low),
                       *const constant = numbers(kick.constant), *const drift = numbers(inverse_[n]),
-                      *const value = numbers(kick.value), *const x = x_.empty() ? nullptr : numbers(x_);
+                      *const value = numbers(kick.value);
   double *const P = numbers(momentum_), *const to = numbers(next.y), *const to_low = numbers(next.low);
   const ScratchRows slope(fields_, strip);
   const std::int32_t* const column = kick.column.data();
+  for (const Source& source : kick.sources)
+    if (!source.sites.empty()) kick_some(source, of_kick, t, from, P);
   for (int first = 0; first < padded_; first += strip) {
     const int count = std::min(strip, padded_ - first);
     for (int a = 0; a < fields_; ++a) {
@@ -274,7 +329,9 @@ void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double
       inputs_[a] = from + begin;
     }
     for (const Source& source : kick.sources) {
-      source.family->evaluate_sources(source.group, {count, inputs_.data(), t, x ? x + first : nullptr}, slope.data());
+      if (!source.sites.empty()) continue;
+      const double* const x = source.x.empty() ? nullptr : numbers(source.x) + first;
+      source.family->evaluate_sources(source.group, {count, inputs_.data(), t, x}, slope.data());
       for (int a = 0; a < fields_; ++a) {
         const int begin = a * padded_ + first;
         const double* const weight = numbers(source.weights) + begin;
@@ -308,6 +365,9 @@ void KickStepper::take_slab(const Kick& first, double share_below) {
     const double t = times.time(newest_) + system_.component(n * fields_).at.time * times.step(newest_);
     Node& next = n + 1 < nodes_ ? node(newest_, n + 1) : ring_[slot * nodes_];
     kick_and_drift(n == 0 ? first : kicks_[n], n, kick, above, t, next);
+    set_driven(n + 1 < nodes_ ? times.time(newest_) + system_.component((n + 1) * fields_).at.time * times.step(newest_)
+                              : times.time(newest_ + 1),
+               next);
   }
   if (overflowed(max_or_nan(largest_)))
     throw NotFinite(
@@ -339,6 +399,14 @@ void KickStepper::read(const std::vector<double>& row, Packs& y) const {
     for (int a = 0; a < fields_; ++a) numbers(y)[a * padded_ + i] = row[at(std::min(i, last) * C + a)];
 }
 
+void KickStepper::set_driven(double t, Node& node) const {
+  for (const auto& [point, given] : driven_points(system_))
+    for (int a = 0; a < fields_; ++a) {
+      const int place = a * padded_ + point;
+      numbers(node.y)[place] = given->value(a, t), numbers(node.low)[place] = 0;
+    }
+}
+
 void KickStepper::start(const std::vector<std::vector<double>>& rows) {
   if (nodes_ > 1)
     throw BadInput("initial.start", "initial.start = exact: sub-steps begin from a row and its momenta; use legendre");
@@ -346,6 +414,7 @@ void KickStepper::start(const std::vector<std::vector<double>>& rows) {
   for (Node& any : ring_) std::ranges::fill(any.low, Pack(0.0));
   Packs &newest = node(newest_, 0).y, &before = node(newest_ - 1, 0).y;
   read(rows.back(), newest), read(rows[rows.size() - 2], before);
+  for (const std::int64_t row : {newest_ - 1, newest_}) set_driven(system_.times()->time(row), node(row, 0));
   // P = M (y₁ − y₀) h/h₀
   const double longer = system_.times()->step(newest_ - 1) / system_.time_step();
   for (int n = 0; n < fields_ * padded_; ++n) {
@@ -359,6 +428,7 @@ void KickStepper::start_legendre(const std::vector<double>& row0, const std::vec
   Node& first = node(0, 0);
   read(row0, first.y), read(momenta, momentum_);
   std::ranges::fill(first.low, Pack(0.0));
+  set_driven(system_.times()->time(0), first);
   for (int i = 0; i < system_.lattice().sites(); ++i)
     for (int a = 0; a < fields_; ++a)
       if (system_.is_held(i, a)) numbers(momentum_)[a * padded_ + i] = 0;
@@ -402,7 +472,8 @@ double KickStepper::residual() const {
 std::size_t KickStepper::bytes_of(const Kick& kick) {
   std::size_t sum =
       4 * (kick.first.size() + kick.column.size()) + sizeof(Pack) * (kick.value.size() + kick.constant.size());
-  for (const Source& source : kick.sources) sum += sizeof(Pack) * source.weights.size();
+  for (const Source& source : kick.sources)
+    sum += sizeof(Pack) * (source.weights.size() + source.x.size()) + 4 * source.sites.size();
   return sum;
 }
 
@@ -410,7 +481,7 @@ StepReport KickStepper::report(bool /*residual*/) const {
   const std::size_t packs = sizeof(Pack) * momentum_.size(), rows = 2 * packs * ring_.size();
   std::size_t kicks = bytes_of(alone_);
   for (const Kick& kick : kicks_) kicks += bytes_of(kick);
-  const std::size_t work = packs * (inverse_.size() + 1) + sizeof(Pack) * x_.size();
+  const std::size_t work = packs * (inverse_.size() + 1);
   return {.starting_rows = 2,
           .behind = behind_,
           .iterates = false,

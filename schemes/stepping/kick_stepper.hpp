@@ -45,6 +45,9 @@ class KickStepper final : public StepMethod {
     const StencilFamily* family;
     int group;
     Packs weights;  ///< as the values of a node
+    Packs x;        ///< of the sites, where the density reads it: the family's own numbers
+    /// Where the family is of some sites alone: these, to whole packs, and weights and x are theirs. Empty: of all.
+    std::vector<std::int32_t> sites;
   };
   /// The kick of the values at a node, y[a·padded + i], a field after the other.
   struct Kick {
@@ -67,7 +70,10 @@ class KickStepper final : public StepMethod {
   std::size_t index(std::int64_t row, int node) const;
   /// At node n of the newest row, `kick` and `drift` times what they are in a step h, to the next node.
   void kick_and_drift(const Kick&, int n, double kick, double drift, double t, Node& next);
+  void kick_some(const Source&, double of_kick, double t, const double* from, double* P) const;
   void read(const std::vector<double>& row, Packs& y) const;
+  /// The values at a time of the points that are driven.
+  void set_driven(double t, Node&) const;
   void take_slab(const Kick& first, double share_below);
   /// A row, or row 0 for those before it, [i·C + c], with the nodes above the row so many `behind` it; or the low parts of both.
   std::vector<double> row_of(std::int64_t row, int behind, bool low) const;
@@ -79,7 +85,6 @@ class KickStepper final : public StepMethod {
   Kick alone_;                         ///< of row 0, which has no slab below it
   std::vector<Kick> kicks_;            ///< of each node: at a row those of both slabs
   std::vector<Packs> inverse_;         ///< M_s⁻¹; 0 where values are data
-  Packs x_;                            ///< of the sites, if a density reads x
   std::vector<Node> ring_;             ///< rows with the nodes above them
   std::vector<int> slots_;             ///< where the newest row stands in the ring, and those before it
   Packs momentum_;                     ///< P

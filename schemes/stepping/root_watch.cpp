@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lattice/index.hpp"
+#include "schemes/system/driven_points.hpp"
 #include "schemes/system/end_work.hpp"
 
 namespace delf {
@@ -27,11 +28,12 @@ void raise(double& largest, double by) { largest = std::max(largest, std::abs(by
 }  // namespace
 
 RootWatch::RootWatch(const LatticeSystem& system)
-    : system_(system), fields_(delf::at(system.fields())), has_flux_(has_flux(system)) {
+    : system_(system), fields_(delf::at(system.fields())), has_flux_(has_flux(system) || has_flux_of_mesh(system)) {
   for (const Component& c : system.all_components()) {
     field_.push_back(delf::at(c.field));
     moves_.push_back(c.role == Role::field || c.position);
   }
+  driven_ = places_of_driven_points(system);
   for (const auto& [column, end] : driven_ends(system))
     for (int c = 0; c < system.components(); ++c)
       if (system.component(c).role == Role::field && system.is_held(column, c))

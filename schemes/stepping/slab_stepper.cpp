@@ -20,6 +20,7 @@
 #include "schemes/stepping/gauge.hpp"
 #include "schemes/stepping/newton.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/driven_points.hpp"
 #include "schemes/system/slab_extent.hpp"
 
 namespace delf {
@@ -189,6 +190,8 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
     std::ranges::copy(rows[r], ring_->row(static_cast<std::int64_t>(r)));
     set_driven_ends(system_, driven_ends_, static_cast<std::int64_t>(r),
                     {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
+    set_driven_points(system_, static_cast<std::int64_t>(r),
+                      {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
     std::fill_n(ring_->low(static_cast<std::int64_t>(r)), rows[r].size(), 0.0);
     largest_[1] = std::exchange(largest_[0], largest_of(rows[r].data()));
   }
@@ -270,8 +273,10 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
   const std::size_t size = predicted_.size();
   std::copy_n(ring_->row(J + future_ - 1), size, ring_->row(J + future_));
   std::copy_n(ring_->low(J + future_ - 1), size, ring_->low(J + future_));
-  for (std::int64_t row = std::max<std::int64_t>(J - 1, 0); row <= J + future_; ++row)
+  for (std::int64_t row = std::max<std::int64_t>(J - 1, 0); row <= J + future_; ++row) {
     set_driven_ends(system_, driven_ends_, row, {ring_->row(row), size});
+    set_driven_points(system_, row, {ring_->row(row), size});
+  }
   for (const Unknowns& unknowns : p.unknowns) {
     for (const int place : unknowns.places) ring_->low(J + unknowns.time)[place] = 0;
     // Starting rows hold the fields; multipliers and inner nodes are known from the slabs that were solved.

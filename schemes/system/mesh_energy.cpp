@@ -21,8 +21,8 @@ namespace delf {
 MeshEnergy::MeshEnergy(std::shared_ptr<const BatchDensity> density, const MeshSpace& space)
     : density_(std::move(density)),
       masses_(lumped_masses(space.mesh)),
-      cells_(mesh_families(point_space(), density_, space)) {  // a table of one row, without φ_t
-  cells_.erase(cells_.begin());                                // the sites
+      cells_(mesh_families(point_space(), density_, {space.mesh, space.fixed})) {  // a table of one row, without φ_t
+  cells_.erase(cells_.begin());                                                    // the sites
   for (const Mesh::Point& p : space.mesh.points) places_.push_back(p[0]);
 }
 

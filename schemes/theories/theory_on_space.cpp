@@ -21,10 +21,6 @@ void require_theory_on(const FieldTheory& theory, Space space) {
   if (space != Space::point && std::ranges::count(theory.fields(), "x", &Component::name) > 0)
     throw BadInput("theory.fields",
                    "theory.fields: \"x\" is the place in densities, but on lattice.space = point; choose another name");
-  if (const auto multipliers = multipliers_of(theory); space == Space::mesh && multipliers.size() > 1)
-    throw BadInput("theory.constraint", "theory.constraint: on a mesh one constraint is kept, and " +
-                                            std::to_string(multipliers.size()) +
-                                            " are given; leave one, or use a lattice");
 }
 
 }  // namespace delf

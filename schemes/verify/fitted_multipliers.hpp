@@ -4,10 +4,10 @@
 
 namespace delf {
 
-/// Gives rows the multipliers of one constraint that fit their equations best, where all rows that an equation reads are
-/// there; fixed sites keep theirs. E_a = F_a + λ ∂G/∂φ_a, and the component of E along ∂G/∂φ is zero:
+/// Gives rows the multipliers of constraints that fit their equations best, where all rows that an equation reads are there;
+/// fixed sites keep theirs. E_a = F_a + Σ_m λ_m ∂G_m/∂φ_a, and the components of E along all ∂G_m/∂φ are zero:
 ///
-///     λ = −Σ_a F_a ∂G/∂φ_a / Σ_a (∂G/∂φ_a)²
+///     Σ_m (∂G_l/∂φ · ∂G_m/∂φ) λ_m = −∂G_l/∂φ · F
 void fit_multipliers(const LatticeSystem&, Window& rows);
 
 }  // namespace delf

@@ -76,7 +76,7 @@ LatticeSystem system_of_field(const ComplexScene& scene) {
   std::vector<Component> components = fields(space.fields());
   if (scene.space->constraint) {
     all.push_back(scene.space->constraint);
-    components.push_back(multipliers_of(*scene.theory).front());
+    std::ranges::copy(multipliers_of(*scene.theory), std::back_inserter(components));
   }
   return {Lattice::on(scene.space), std::move(all), 1, std::move(components)};
 }
@@ -85,9 +85,10 @@ std::vector<double> row_of(const LatticeSystem& system, std::span<const double> 
                            std::span<const double> multipliers) {
   const std::size_t d = at(system.fields());
   std::vector<double> row;
+  auto multiplier = multipliers.begin();
   for (std::size_t i = 0; i < at(system.lattice().sites()); ++i)
     for (const Component& c : system.all_components())
-      row.push_back(c.role == Role::field ? fields[i * d + at(c.field)] : multipliers.empty() ? 0 : multipliers[i]);
+      row.push_back(c.role == Role::field ? fields[i * d + at(c.field)] : multipliers.empty() ? 0 : *multiplier++);
   return row;
 }
 

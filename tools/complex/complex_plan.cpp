@@ -61,6 +61,9 @@ void plan_mesh(const ComplexScene& c) {
              : held == 0    ? ", natural"
              : held < walls ? fmt::format(", {} fixed, {} natural", held, walls - held)
                             : ", fixed");
+  if (!space.driven.empty() || !space.fluxes.empty())
+    fmt::print("             {} points follow boundary formulas, and something flows in at {}\n", space.driven.size(),
+               space.fluxes.size());
   fmt::print("             {}\n", c.topology_in_words());
   const std::size_t values = 8 * space.fields_of_row();
   if (c.time == MeshTime::none) {

@@ -20,6 +20,7 @@
 #include "schemes/states/state_registry.hpp"
 #include "schemes/theories/theory_on_space.hpp"
 #include "schemes/theories/theory_registry.hpp"
+#include "tools/complex/mesh_boundary.hpp"
 #include "tools/complex/mesh_text.hpp"
 #include "tools/rows/exact_solution.hpp"
 #include "tools/scene/key_warning.hpp"
@@ -113,6 +114,59 @@ void require_tiling(ComplexScene& c) {
                                                c.mesh_file.filename().string(), fault->line, fault->what));
 }
 
+/// Fields go on where the mesh is joined: the formulas of the start have the same value on both sides.
+void require_periodic(const ComplexScene& c) {
+  const Mesh& mesh = c.space->mesh;
+  for (std::size_t n = 0; n < mesh.places.size(); ++n) {
+    const Mesh::Point &here = mesh.points[at(mesh.vertices[n])], &there = mesh.places[n];
+    if (here == there) continue;
+    for (const ComplexScene::Field& field : c.fields)
+      for (const auto& [key, formula] :
+           {std::pair("exact." + field.name, &field.exact), std::pair("initial." + field.name, &field.value),
+            std::pair("initial." + field.name + "_t", &field.rate)}) {
+        if (!*formula) continue;
+        const double value = (**formula)(0, here), other = (**formula)(0, there);
+        constexpr double rounding = 1e-9;
+        if (!(std::abs(other - value) <= rounding * std::max({1.0, std::abs(value), std::abs(other)})))
+          throw c.scene.settings.error(
+              key, fmt::format(
+                       "jumps where the mesh is joined, from {:.6g} at ({:.6g}) to {:.6g} at ({:.6g}); give a formula "
+                       "of their period",
+                       value, fmt::join(here, ", "), other, fmt::join(there, ", ")));
+      }
+  }
+}
+
+/// The start, or the solution, is what driven points have: else it says so.
+void warn_of_driven(ComplexScene& c) {
+  const Settings& settings = c.scene.settings;
+  const Mesh& mesh = c.space->mesh;
+  for (std::size_t a = 0; a < c.fields.size(); ++a) {
+    const auto& [name, start, rate, exact] = c.fields[a];
+    const bool starts = !exact && c.time != MeshTime::none;
+    if (!exact && !starts) continue;
+    double worst = 0, when = 0, size = 0;
+    std::int32_t where = -1;
+    constexpr int times = 16;
+    for (int n = 0; n <= (exact && !c.is_one_problem() ? times : 0); ++n) {
+      const double t = n == 0 ? 0 : c.scene.end() * n / times;
+      for (const auto& [point, given] : c.space->driven) {
+        const double value = given->value(static_cast<int>(a), t);
+        const double apart = std::abs((exact ? *exact : *start)(t, mesh.points[at(point)]) - value);
+        size = std::max(size, std::abs(value));
+        if (apart > worst) worst = apart, when = t, where = point;
+      }
+    }
+    constexpr double rounding = 1e-9;
+    if (!(worst > rounding * std::max(1.0, size))) continue;
+    const Setting* const s = settings.find((exact ? "exact." : "initial.") + name);
+    c.scene.warnings.push_back(
+        key_warning(settings, *s,
+                    fmt::format("is {:.3g} off what point {} is driven to at t = {:.6g}; that counts", worst,
+                                mesh.point_number(at(where)), when)));
+  }
+}
+
 /// Data are on G = 0: rows 0, or the fixed boundary where there is no time.
 void require_constraint(const ComplexScene& c) {
   const std::vector<double> values = c.values();
@@ -195,27 +249,37 @@ void require_solution(const ComplexScene& c) {
   require_solved(points, names);
 }
 
-/// boundary.NAME for parts of the mesh.
-std::vector<PartCondition> read_parts(const Settings& settings, const Mesh& mesh) {
-  std::vector<PartCondition> conditions;
-  for (const Setting& s : settings.all()) {
-    constexpr std::string_view of_boundary = "boundary.";
-    if (!s.key.starts_with(of_boundary) || s.key == "boundary.mesh") continue;
-    if (&s != settings.find(s.key)) continue;  // the command line wins
-    const std::string part = s.key.substr(of_boundary.size());
-    if (std::ranges::find(mesh.parts, part, &Mesh::Part::name) == mesh.parts.end()) {
-      std::vector<std::string> names;
-      for (const Mesh::Part& named : mesh.parts) names.push_back(named.name);
-      throw settings.error(
-          s.key, mesh.parts.empty()
-                     ? "the boundary of this mesh has no named parts; use boundary.mesh"
-                     : fmt::format("the mesh has no part of this name; its parts are {}", fmt::join(names, ", ")));
-    }
-    if (s.value != "fixed" && s.value != "natural")
-      throw settings.error(s.key, "a part of a mesh is fixed or natural; use one of them");
-    conditions.push_back({part, s.value == "fixed"});
-  }
-  return conditions;
+/// What the boundary of a mesh cannot be: driven where cells step by themselves, or on a circle of values.
+void refuse_boundary(const ComplexScene& c, const MeshBoundary& boundary, const Values& values) {
+  const Settings& settings = c.scene.settings;
+  if (const std::string& key = boundary.key_that_reads_time(); c.time == MeshTime::none && !key.empty())
+    throw settings.error(key, "reads t, and with lattice.time = none there is none; give a formula of x, y and z");
+  if (boundary.key_of_formula().empty()) return;
+  if (c.time == MeshTime::cells)
+    throw settings.error(
+        boundary.key_of_formula(),
+        "cells with steps of their own have boundaries that are fixed or natural; use one of these, or "
+        "lattice.time = rows");
+  if (values.choice("theory.fibre") == "S1")
+    throw settings.error(boundary.key_of_formula(),
+                         "a formula gives real numbers, and theory.fibre = S1 angles; use theory.fibre = R");
+}
+
+/// A density that reads x has none where cells go on at another x.
+void refuse_seam(const ComplexScene& c) {
+  const Mesh& mesh = c.space->mesh;
+  const BatchDensity& density = c.theory->density();
+  const int x = density.variables() + 1;  // behind t
+  bool reads_x = false;
+  for (int v = 0; v < density.variables(); ++v) reads_x = reads_x || !density.is_zero(v, x);
+  if (!reads_x || mesh.places.empty()) return;
+  const double near = 1e-6 * shortest_edge(mesh);
+  for (std::size_t n = 0; n < mesh.places.size(); ++n)
+    if (std::abs(mesh.places[n][0] - mesh.points[at(mesh.vertices[n])][0]) > near)
+      throw BadInput(
+          "theory.density",
+          "theory.density: reads x, which jumps where the mesh is joined; join sides of the same x, or use a "
+          "density without it");
 }
 
 /// The mesh, or the complex, its method and its time. Returns the shortest edge of the mesh as it is given.
@@ -242,10 +306,16 @@ double read_space(ComplexScene& c, const Values& values, int halvings) {
   if (c.stencils) return 1;
   const double edge = shortest_edge(std::get<Mesh>(mesh));
   const bool fixed = values.choice("boundary.mesh") == "fixed";
-  const auto space = std::make_shared<CellSpace>(finer_mesh(name, std::get<Mesh>(std::move(mesh)), halvings),
-                                                 c.theory->shared_density(), fixed, c.theory->constraint());
-  space->fixed = held_points(space->mesh, fixed, read_parts(settings, space->mesh));
+  std::vector<std::string> fields;
+  for (const Component& field : c.theory->fields()) fields.push_back(field.name);
+  const Mesh apart = finer_mesh(name, std::get<Mesh>(std::move(mesh)), halvings);
+  const MeshBoundary boundary(settings, apart, fixed, fields, numbers_of(p.parameters));
+  refuse_boundary(c, boundary, values);
+  const auto space = std::make_shared<CellSpace>(joined(apart, boundary.joined_parts()), c.theory->shared_density(),
+                                                 fixed, c.theory->constraint());
+  boundary.put_on(*space);
   c.space = space;
+  refuse_seam(c);
   p.lattice = Lattice::on(c.space);
   return edge;
 }
@@ -314,6 +384,7 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
   Settings& settings = scene.settings;
   scene.name = settings.file().stem().string();
   const Values values(settings);
+  refuse_keys_of_lattices(settings);
   for (const Parameter& key : settings.all_keys()) values.check(key);
   try {
     Problem& p = scene.problem;
@@ -339,11 +410,13 @@ ComplexScene read_complex_scene(Settings given, int halvings) {
     p.max_iterations = static_cast<int>(values.integer("scheme.max_iterations"));
     p.threads = static_cast<int>(values.integer("run.threads"));
     read_fields(c, values);
+    if (c.space) require_periodic(c);
     if (c.theory->constraint()) require_constraint(c);
     scene.initial.seed = static_cast<std::uint64_t>(values.integer("run.seed"));
     if (!c.is_one_problem()) read_steps(c, values, method, edge, halvings);
     read_output(settings, values, usual_records, scene);
     if (c.space && c.has_solution()) require_solution(c);
+    if (c.space) warn_of_driven(c);
   } catch (const BadInput& bad) {
     throw settings.located(bad);
   }
@@ -385,10 +458,23 @@ std::vector<double> ComplexScene::of_sites(double t, const std::vector<const Pla
   return all;
 }
 
+namespace {
+
+/// At driven points the numbers that are given there.
+void take_driven(const CellSpace& space, double t, double (GivenInTime::*number)(int, double) const,
+                 std::vector<double>& all) {
+  const int d = space.fields();
+  for (const auto& [point, given] : space.driven)
+    for (int a = 0; a < d; ++a) all[at(point * d + a)] = ((*given).*number)(a, t);
+}
+
+}  // namespace
+
 std::vector<double> ComplexScene::values() const {
   std::vector<const PlaceFormula*> formulas;
   for (const Field& f : fields) formulas.push_back(f.exact ? &*f.exact : &*f.value);
   std::vector<double> all = of_sites(0, formulas);
+  if (space) take_driven(*space, 0, &GivenInTime::value, all);
   return scene.problem.circle_valued ? lifted(space->mesh, std::move(all)) : all;
 }
 std::vector<double> ComplexScene::rates() const {
@@ -398,7 +484,9 @@ std::vector<double> ComplexScene::rates() const {
   std::vector<const PlaceFormula*> formulas;
   for (std::size_t a = 0; a < fields.size(); ++a)
     formulas.push_back(has_solution() ? &of_solution[a] : fields[a].rate ? &*fields[a].rate : nullptr);
-  return of_sites(0, formulas);
+  std::vector<double> all = of_sites(0, formulas);
+  if (space) take_driven(*space, 0, &GivenInTime::rate, all);
+  return all;
 }
 std::vector<double> ComplexScene::solution(double t) const {
   std::vector<const PlaceFormula*> formulas;

@@ -58,6 +58,10 @@ struct ComplexScene {
   /// The coordinates of a site, and all of them, site by site: t x y z in spacetime, x y z on a mesh.
   int coordinates() const;
   std::vector<double> places() const;
+  /// Rows have a boundary that is driven, or that something flows in through: energies change by its work.
+  bool boundary_works() const {
+    return space && time == MeshTime::rows && !(space->driven.empty() && space->fluxes.empty());
+  }
   bool has_solution() const { return fields.front().exact.has_value(); }
   /// φ and φ_t at t = 0, and the solution, if there is one, at any time; [i·d + a].
   std::vector<double> values() const;

@@ -118,10 +118,12 @@ class MeshVerification {
       const std::vector<double> multipliers = multipliers_of(file, name, first + 1, last - first);
       Window held = system.window(0, std::move(rows), 0);
       if (scene_.theory->constraint() && multipliers.empty()) fit_multipliers(system, held);
-      const std::size_t N = scene_.space->mesh.points.size();
-      for (std::size_t n = N; n < multipliers.size(); ++n)  // of A_i ½(h_below + h_above) λ_i G
-        held.rows[n / N][(n % N + 1) * at(held.components) - 1] =
-            multipliers[n] * scene_.space->masses[n % N] * 0.5 * (times[n / N + 1] - times[n / N - 1]);
+      const std::size_t m = at(scene_.space->constraints()), of_row = scene_.space->multipliers_of_row();
+      for (std::size_t n = of_row; n < multipliers.size(); ++n) {  // of A_i ½(h_below + h_above) λ_i G
+        const std::size_t row = n / of_row, i = n % of_row / m;
+        held.rows[row][(i + 1) * at(held.components) - m + n % m] =
+            multipliers[n] * scene_.space->masses[i] * 0.5 * (times[row + 1] - times[row - 1]);
+      }
       look_at_window(windows, held, fmt::format("frames {} to {}", first, last));
     }
     if (Interrupt::asked()) verdict_.status = "interrupted";
@@ -131,11 +133,11 @@ class MeshVerification {
   std::vector<double> multipliers_of(const FieldsReader& file, const std::string& name, int first, int count) const {
     const auto [frames, sites, components] = file.shape(Role::multiplier);
     if (!scene_.theory->constraint() || frames == 0) return {};
-    if (frames != file.frames() || sites != scene_.sites() || components != 1)
+    if (frames != file.frames() || sites != scene_.sites() || components != scene_.space->constraints())
       throw BadScene(
           fmt::format("command line: --fields: {}: /multiplier is {} x {} x {}; write frames x sites x components = {} "
-                      "x {} x 1, or leave it out",
-                      name, frames, sites, components, file.frames(), scene_.sites()));
+                      "x {} x {}, or leave it out",
+                      name, frames, sites, components, file.frames(), scene_.sites(), scene_.space->constraints()));
     std::vector<double> all;
     for (int f = first; f < first + count; ++f) {
       const std::vector<double> one = file.values(Role::multiplier, f);
@@ -312,6 +314,12 @@ class MeshVerification {
     Problem problem = scene_.problem_on_mesh();
     if (forth.evolution().system().families().front()->is_placed())
       problem = mirrored_in_time(std::move(problem), forth.time(there));
+    if (scene_.boundary_works()) {
+      auto space = std::make_shared<MeshSpace>(*scene_.space);
+      for (auto* list : {&space->driven, &space->fluxes})
+        for (auto& [point, given] : *list) given = std::make_shared<BackFrom>(forth.time(there), given);
+      problem.lattice = Lattice::on(std::move(space));
+    }
     if (!problem.time_steps.empty()) problem.time_steps.assign(lengths_.rbegin(), lengths_.rend());
     Simulation again(problem);
     again.start({forth.evolution().stepper().row(0), forth.evolution().stepper().row(1)}, forth.step_density());
@@ -327,6 +335,9 @@ class MeshVerification {
     double distance = 0, size = 0;
     for (std::size_t n = 0; n < goal.size(); ++n)
       distance = std::max(distance, std::abs(goal[n] - reached[n])), size = std::max(size, std::abs(goal[n]));
+    // a field that something sets off may begin at rest
+    if (scene_.boundary_works())
+      for (const double phi : forth.evolution().stepper().row(0)) size = std::max(size, std::abs(phi));
     Balance balance{distance, std::max(size, 1e-300), static_cast<std::int64_t>(goal.size())};
     reversal_.take(balance, fmt::format("{} steps back", back));
     if (!reversal_.passed()) reversal_.failure = "the steps back do not retrace the steps forth";

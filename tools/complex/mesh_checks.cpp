@@ -56,6 +56,12 @@ std::vector<LinearSymmetry> MeshChecks::symmetries(const Values& values) {
     for (const LinearSymmetry& symmetry : density->up_to_divergence())
       left_out_.push_back(fmt::format(
           "Noether, {}: the density has it up to a divergence, and its stencils on a mesh have not", symmetry.name));
+  if (scene_.space && !scene_.space->fluxes.empty()) {
+    for (const LinearSymmetry& symmetry : all)
+      left_out_.push_back(
+          fmt::format("Noether, {}: the action of what flows in at the boundary has it not", symmetry.name));
+    all.clear();
+  }
   std::vector<std::string> names;
   for (const auto& field : scene_.fields) names.push_back(field.name);
   add_generator(scene_.scene, values.text("verify.generator").value_or(""), names, all);

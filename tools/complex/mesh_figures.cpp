@@ -9,6 +9,7 @@
 
 #include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "tools/complex/drawn_mesh.hpp"
 #include "tools/complex/mesh_files.hpp"
 #include "tools/complex/mesh_stepping.hpp"
 #include "tools/figures/drawing.hpp"
@@ -43,14 +44,16 @@ std::string colour_bar(const std::string& quantity) {
 
 // Curves, in the order of positions: a mesh may number its points in any.
 std::string curves(const ComplexScene& c, const MeshFilm& film, const fs::path& scratch) {
-  const auto& points = c.space->mesh.points;
+  const DrawnMesh drawn(c.space->mesh);
+  const auto& points = drawn.points;
   std::vector<std::size_t> order(points.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(order, {}, [&](std::size_t i) { return points[i][0]; });
   std::string table, plot;
   for (std::size_t f = 0; f < film.frames().size(); ++f) {
     const MeshFilm::Frame& frame = film.frames()[f];
-    for (const std::size_t i : order) table += fmt::format("{} {}\n", points[i][0], value_at(c, frame, i));
+    for (const std::size_t i : order)
+      table += fmt::format("{} {}\n", points[i][0], value_at(c, frame, at(drawn.of[i])));
     table += "\n\n";
     plot += fmt::format("{} 'curves' index {} using 1:2 with lines lw 1.6 lc rgb '{}' title '{}'",
                         f == 0 ? "plot" : ",", f, component_colour(f),
@@ -76,6 +79,7 @@ void add_facet(std::string& table, std::span<const int> corners, const auto& cor
 std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, const fs::path& scratch) {
   if (mesh.cells() > most_cells) return {};
   const bool flat = mesh.coordinates() < 3;
+  const DrawnMesh drawn(mesh);
   std::vector<double> shown;
   for (const MeshFilm::Frame& frame : film.frames())
     for (std::size_t i = 0; i < mesh.points.size(); ++i) shown.push_back(value_at(c, frame, i));
@@ -91,12 +95,12 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
   for (std::size_t f = 0; f < count; ++f) {
     std::string table;
     const auto corner = [&](std::int32_t p) {
-      const Mesh::Point& at = mesh.points[p];
-      const double v = value_at(c, film.frames()[f], delf::at(p));
+      const Mesh::Point& at = drawn.points[delf::at(p)];
+      const double v = value_at(c, film.frames()[f], delf::at(drawn.of[delf::at(p)]));
       table += flat ? fmt::format("{} {} {}\n", at[0], at[1], v) : fmt::format("{} {} {} {}\n", at[0], at[1], at[2], v);
     };
     for (int cell = 0; cell < mesh.cells(); ++cell) {
-      const auto corners = mesh.cell(cell);
+      const auto corners = drawn.cell(mesh, cell);
       add_facet(table, corners, corner);
     }
     const std::string file = fmt::format("map{}", f);
@@ -164,8 +168,7 @@ std::string updates(const ComplexScene& c, const fs::path& scratch) {
   std::int64_t lines = 0;
   for (int cell = 0; cell < mesh.cells(); ++cell) {
     const double h = steps[cell];
-    const auto ends = mesh.cell(cell);
-    const double a = mesh.points[ends[0]][0], b = mesh.points[ends[1]][0];
+    const double a = mesh.corner(cell, 0)[0], b = mesh.corner(cell, 1)[0];
     for (std::int64_t n = 0; static_cast<double>(n) * h <= until && lines < most_lines; ++n, ++lines)
       table += fmt::format("{} {} {} 0\n", a, static_cast<double>(n) * h, b - a);
   }

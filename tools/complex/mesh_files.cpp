@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <span>
 
 #include "lattice/index.hpp"
+#include "tools/complex/drawn_mesh.hpp"
 #include "tools/files/frames_file.hpp"
 
 namespace delf {
@@ -31,12 +34,15 @@ ListedCells::ListedCells(const ComplexScene& scene) {
 bool has_xdmf(const ComplexScene& scene) { return scene.coordinates() == 2 || scene.coordinates() == 3; }
 
 std::string xdmf(const ComplexScene& scene, std::span<const double> times) {
-  const int n = scene.sites(), cells = scene.cells(), d = static_cast<int>(scene.fields.size());
+  const std::optional<DrawnMesh> drawn = scene.space ? std::optional<DrawnMesh>(scene.space->mesh) : std::nullopt;
+  const bool is_joined = drawn && drawn->points.size() > scene.space->mesh.points.size();
+  const int n = drawn ? static_cast<int>(drawn->points.size()) : scene.sites(), cells = scene.cells(),
+            d = static_cast<int>(scene.fields.size());
   const ListedCells listed_cells(scene);
   const int corners = listed_cells.corners;
   // Cells of one kind are read from the file; others are listed here, each behind XDMF's number of its kind: those of two
-  // kinds, and stencils, of which a cell is the outline.
-  const bool uniform = scene.space && std::ranges::count(listed_cells.points, -1) == 0;
+  // kinds, those of a mesh with a seam, which have copies of its points, and stencils, of which a cell is the outline.
+  const bool uniform = scene.space && !is_joined && std::ranges::count(listed_cells.points, -1) == 0;
   std::string topology;
   if (uniform) {
     topology = fmt::format(
@@ -60,7 +66,7 @@ std::string xdmf(const ComplexScene& scene, std::span<const double> times) {
       ++listed, numbers += points.size() + (kind.size() > 1 ? 2 : 1);
     };
     for (int c = 0; c < cells; ++c)
-      if (scene.space) add(scene.space->mesh.cell(c));
+      if (drawn) add(drawn->cell(scene.space->mesh, c));
       else add(scene.stencils->outline(scene.stencils->stencils[c]));
     topology = fmt::format(
         "<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\"><DataItem Dimensions=\"{}\" NumberType=\"Int\" "
@@ -68,14 +74,20 @@ std::string xdmf(const ComplexScene& scene, std::span<const double> times) {
         listed, numbers, list);
   }
   const int coordinates = scene.coordinates();
+  std::string geometry = "Format=\"HDF\">fields.h5:/space";
+  if (is_joined) {
+    geometry = "Format=\"XML\">\n";
+    for (const Mesh::Point& p : drawn->points)
+      geometry += fmt::format("{}\n", fmt::join(std::span(p).first(at(coordinates)), " "));
+  }
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"rows\" GridType=\"Collection\" "
       "CollectionType=\"Temporal\">\n";
   for (std::size_t f = 0; f < times.size(); ++f) {
     text += fmt::format(
         "<Grid Name=\"row\"><Time Value=\"{}\"/>\n{}\n<Geometry GeometryType=\"{}\"><DataItem Dimensions=\"{} {}\" "
-        "Precision=\"8\" Format=\"HDF\">fields.h5:/space</DataItem></Geometry>\n",
-        times[f], topology, coordinates == 2 ? "XY" : "XYZ", n, coordinates);
+        "Precision=\"8\" {}</DataItem></Geometry>\n",
+        times[f], topology, coordinates == 2 ? "XY" : "XYZ", n, coordinates, geometry);
     for (int a = 0; a < d; ++a)
       text += fmt::format(
           "<Attribute Name=\"{0}\" Center=\"Node\"><DataItem Dimensions=\"{1}\" NumberType=\"Float\" "

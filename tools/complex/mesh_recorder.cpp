@@ -9,9 +9,12 @@
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/theories/theory_on_space.hpp"
+#include "tools/complex/drawn_mesh.hpp"
 #include "tools/complex/mesh_files.hpp"
 #include "tools/files/frames_file.hpp"
 #include "tools/files/text_file.hpp"
+#include "tools/run/stepping.hpp"
 
 namespace delf {
 namespace {
@@ -21,9 +24,11 @@ RowNames names_of(const ComplexScene& c) {
   RowNames names;
   names.of[Role::field].clear();
   for (const auto& field : c.fields) names.of[Role::field].push_back(field.name);
-  if (c.theory->constraint()) names.of[Role::multiplier] = {"lambda"}, names.further.emplace_back("constraint");
+  for (const Component& multiplier : multipliers_of(*c.theory)) names.of[Role::multiplier].push_back(multiplier.name);
+  if (c.theory->constraint()) names.further.emplace_back("constraint");
   if (!c.is_one_problem())
     for (const LinearSymmetry& s : c.theory->symmetries()) names.further.push_back(s.name);
+  if (c.boundary_works()) names.further.emplace_back(energy_less_work);
   return names;
 }
 
@@ -51,17 +56,17 @@ void MeshRecorder::record(const MeshRow& r, std::span<const SlabEnergy> slabs) {
   RecordedRow row;
   row[Role::field].assign(r.values.begin(), r.values.end());
   row[Role::multiplier].assign(r.multipliers.begin(), r.multipliers.end());
-  if (c_.theory->constraint()) row[Role::multiplier].resize(c_.sites(), 0.0);
+  if (c_.theory->constraint()) row[Role::multiplier].resize(c_.space->multipliers_of_row(), 0.0);
   put(r.time, row, {}, r.node_times);
   times_.push_back(r.time);
   if (c_.scene.figures) frames_.add(r.row, r.time, r.values);
-  outcome_.energy_error_max = largest_energy_error();
+  if (!c_.boundary_works()) outcome_.energy_error_max = largest_energy_error();
 }
 
 void MeshRecorder::watch(const MeshRow& r) {
   require_finite(r);
   Recorder::watch(r.time, take(r));
-  outcome_.energy_error_max = largest_energy_error();
+  if (!c_.boundary_works()) outcome_.energy_error_max = largest_energy_error();
 }
 
 void MeshRecorder::require_finite(const MeshRow& r) const {
@@ -78,7 +83,15 @@ double MeshRecorder::take(const MeshRow& r) {
   else if (c_.time == MeshTime::cells) o.residual_max = r.residual;  // of asynchronous steps it is not measured
   if (c_.theory->constraint() && !(r.constraint <= o.constraint_max)) o.constraint_max = r.constraint;
   for (std::size_t n = 0; n < r.momenta.size(); ++n) o.conserved[n].take(r.momenta[n].sum, r.momenta[n].absolute);
-  return o.energy_initial == 0 ? Outcome::unknown : (r.energy - o.energy_initial) / std::abs(o.energy_initial);
+  if (!c_.boundary_works())
+    return o.energy_initial == 0 ? Outcome::unknown : (r.energy - o.energy_initial) / std::abs(o.energy_initial);
+  const double left = r.energy - r.work, gap = left - o.energy_initial;
+  largest_gap_ = std::max(largest_gap_, std::abs(gap));
+  largest_energy_ = std::max({largest_energy_, std::abs(o.energy_initial), std::abs(r.energy)});
+  Conserved& kept = o.conserved.back();
+  kept.take(left, 0);
+  kept.error_max = o.energy_error_max = largest_gap_ == 0 ? 0 : largest_gap_ / largest_energy_;
+  return gap == 0 ? 0 : gap / largest_energy_;
 }
 
 void MeshRecorder::note(const MeshRow& r) {
@@ -86,6 +99,7 @@ void MeshRecorder::note(const MeshRow& r) {
   Record record{r.row, r.time, r.energy, take(r), Outcome::unknown, Outcome::unknown, r.iterations, r.residual, {}};
   if (c_.theory->constraint()) record.further.push_back(r.constraint);
   for (const Balance& momentum : r.momenta) record.further.push_back(momentum.sum);
+  if (c_.boundary_works()) record.further.push_back(r.energy - r.work);
   Recorder::note(record);
 }
 
@@ -93,12 +107,19 @@ void MeshRecorder::visit(SavedState& state) {
   Recorder::visit(state);
   state("times of frames", times_);
   frames_.visit(state);
+  if (c_.boundary_works()) state("largest gap", largest_gap_), state("largest energy", largest_energy_);
 }
 
 void MeshRecorder::close() {
   Recorder::close();
   if (!c_.scene.fields || !has_xdmf(c_)) return;
-  write_frames_file(folder_, {{"/field", names_of(c_).of[Role::field]}}, times_.size(), at(c_.sites()));
+  std::vector<std::int32_t> copies;
+  if (c_.space) {
+    const DrawnMesh drawn(c_.space->mesh);
+    copies.assign(drawn.copied(c_.space->mesh).begin(), drawn.copied(c_.space->mesh).end());
+  }
+  write_frames_file(folder_, {{"/field", names_of(c_).of[Role::field]}}, times_.size(), at(c_.sites()),
+                    {.together = false, .moving = {}, .copies = copies});
   write_text_file(folder_ / "fields.xdmf", xdmf(c_, times_));
 }
 

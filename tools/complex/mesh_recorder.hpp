@@ -27,6 +27,7 @@ struct MeshRow {
   double constraint = Outcome::unknown;     ///< the largest |G|
   /// Those found with the row: of the row before, or of a field at rest its own. Empty: none yet, or no constraint.
   std::span<const double> multipliers = {};
+  double work = 0;  ///< of the boundary up to the row, where it is driven or something flows in
 };
 
 /// The recorder of a run on a mesh: its files are those of any run, with the cells in fields.h5 and fields.xdmf beside it,
@@ -55,6 +56,8 @@ class MeshRecorder final : public Recorder {
   Outcome& outcome_;
   MeshFilm frames_;
   std::vector<double> times_;  ///< of the frames of fields.h5
+  /// Where the boundary works: a run may begin at rest, and its energy is nothing to compare with then.
+  double largest_gap_ = 0, largest_energy_ = 0;
 };
 
 }  // namespace delf

@@ -17,10 +17,12 @@
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/system/conserved.hpp"
 #include "schemes/system/mesh_energy.hpp"
+#include "schemes/system/mesh_work.hpp"
 #include "schemes/system/momenta.hpp"
 #include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/mesh_warnings.hpp"
 #include "tools/report/interrupt.hpp"
+#include "tools/run/stepping.hpp"
 #include "tools/run/tiny_steps.hpp"
 
 namespace delf {
@@ -48,7 +50,11 @@ class AllSites final : public MeshStepping {
         simulation_(c.problem_on_mesh()),
         energy_(c.theory->shared_density(), *c.space),
         values_(c.space->fields_of_row()),
-        before_(values_) {}
+        before_(values_) {
+    if (!c.boundary_works()) return;
+    work_.emplace(simulation_.evolution().system(), c.theory->shared_density());
+    outcome.conserved.push_back({energy_less_work, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+  }
 
   void describe(Outcome& o) const override {
     o.solve = simulation_.solve_summary();
@@ -63,6 +69,7 @@ class AllSites final : public MeshStepping {
  private:
   void begin() override {
     delf::start(c_, simulation_);
+    add_work();
     check_angles();
   }
   std::int64_t newest_row() const override { return simulation_.newest(); }
@@ -81,10 +88,12 @@ class AllSites final : public MeshStepping {
     std::vector<double> rates = c_.rates();
     for (std::size_t n = 0; n < rates.size(); ++n)
       if (c_.space->fixed[n / c_.fields.size()]) rates[n] = 0;
+    if (work_) work_->give_rates(rates, 0);
     return energy_(c_.values(), rates, 0);
   }
   void step(bool looked_at) override {
     simulation_.step(looked_at || c_.scene.problem.circle_valued);
+    add_work();
     check_angles();
   }
   int iterations() const override { return simulation_.iterations(); }
@@ -98,23 +107,41 @@ class AllSites final : public MeshStepping {
     if (is_whole) {
       const bool needs_momenta = c_.has_method() || !c_.theory->symmetries().empty();
       const std::vector<double> p = needs_momenta ? momenta(back) : std::vector<double>();
-      now.energy = c_.has_method() ? energy_(values_, energy_.rates(values_, p, t), t) : energy_between();
+      now.energy = c_.has_method() ? energy_of_row(p, t) : energy_between();
+      // the energy between two rows is that of the half step
+      if (work_)
+        now.work = c_.has_method() ? (is_newest ? work_->sum() : work_->sum_before())
+                                   : 0.5 * (work_->sum_before() + work_->sum()) - work_of_first_step_;
       for (const LinearSymmetry& symmetry : c_.theory->symmetries()) now.momenta.push_back(sum(symmetry, p));
     } else {  // a start that failed left row 0 alone
       now.energy = energy_of_start();
       now.momenta.resize(c_.theory->symmetries().size(), {Outcome::unknown, 0, 0});
     }
     if (c_.space->constraint) now.constraint = c_.space->largest_constraint(now.values);
-    if (simulation_.count(Role::multiplier) == 1 && is_newest) now.multipliers = multipliers();
+    if (c_.space->constraint && simulation_.count(Role::multiplier) == c_.space->constraints() && is_newest)
+      now.multipliers = multipliers();
     return now;
   }
-  void visit_fields(SavedState& state) override { simulation_.visit(state); }
+  void visit_fields(SavedState& state) override {
+    simulation_.visit(state);
+    if (work_) work_->visit(state), state("work of the first step", work_of_first_step_);
+  }
 
   const RowTimes& steps() const { return *simulation_.evolution().system().times(); }
   void check_angles() {
     if (!c_.scene.problem.circle_valued) return;
     simulation_.copy_row(0, values_), simulation_.copy_row(1, before_);
     check_wrapped_differences(c_.space->mesh, values_, before_);
+  }
+  void add_work() {
+    if (!work_) return;
+    work_->add(simulation_.evolution().stepper().window(2));
+    if (newest_row() == 1) work_of_first_step_ = 0.5 * work_->sum();
+  }
+  double energy_of_row(const std::vector<double>& p, double t) {
+    std::vector<double> rates = energy_.rates(values_, p, t);
+    if (work_) work_->give_rates(rates, t);
+    return energy_(values_, rates, t);
   }
   /// Of the last two rows, whichever of them is asked for.
   double energy_between() {
@@ -136,12 +163,13 @@ class AllSites final : public MeshStepping {
   }
   /// λ of the row before, where the action has A_i ½(h_below + h_above) λ_i G(y_i): its stencils have λ_i G(y_i) alone.
   std::span<const double> multipliers() {
-    multipliers_.resize(c_.sites());
+    multipliers_.resize(c_.space->multipliers_of_row());
     simulation_.copy_row(0, multipliers_, Role::multiplier);
     const std::int64_t row = newest_row() - 1;
     const double above = steps().step(row), below = row > 0 ? steps().step(row - 1) : above;
-    for (std::size_t i = 0; i < multipliers_.size(); ++i)
-      multipliers_[i] /= 0.5 * (below + above) * c_.space->masses[i];
+    const std::size_t m = at(c_.space->constraints());
+    for (std::size_t n = 0; n < multipliers_.size(); ++n)
+      multipliers_[n] /= 0.5 * (below + above) * c_.space->masses[n / m];
     return multipliers_;
   }
   /// Σ_i p_i · ξ(φ_i)
@@ -157,12 +185,17 @@ class AllSites final : public MeshStepping {
 
   Simulation simulation_;
   MeshEnergy energy_;
+  std::optional<MeshWork> work_;   ///< of a boundary that does any
+  double work_of_first_step_ = 0;  ///< at its middle
   std::vector<double> values_, before_, multipliers_;
 };
 
 /// True if ξ is not zero at a point that is fixed: what the symmetry conserves is taken up there.
 bool moves_boundary(const LinearSymmetry& symmetry, const CellSpace& space, const std::vector<double>& values) {
   const std::size_t d = symmetry.shift.size();
+  const auto not_zero = [](double x) { return x != 0; };
+  if (!space.driven.empty() || !space.fluxes.empty())
+    return std::ranges::any_of(symmetry.shift, not_zero) || std::ranges::any_of(symmetry.matrix, not_zero);
   for (std::size_t n = 0; n < values.size(); ++n)
     if (space.fixed[n / d] && generator_at(symmetry, n % d, values.data() + n - n % d) != 0) return true;
   return false;
@@ -222,6 +255,7 @@ void MeshStepping::make_first_rows() {
     outcome_.conserved[n].take(first.momenta[n].sum, first.momenta[n].absolute);
     outcome_.conserved[n].at_walls = moves_boundary(c_.theory->symmetries()[n], *c_.space, c_.values());
   }
+  if (c_.boundary_works()) outcome_.conserved.back().take(first.energy - first.work, std::abs(first.energy));
 }
 
 MeshRow MeshStepping::last_row() {

@@ -41,12 +41,17 @@ std::vector<std::string> warnings_of_rows(const ComplexScene& c, const Outcome& 
   constexpr double ten_percent = 0.1;
   const std::string remedy =
       c.scene.settings.find("lattice.courant") ? "reduce lattice.courant" : "reduce lattice.time_step";
-  std::vector<Found> found{energy_off_start(o, std::isnan(energy_of_start) ? o.energy_initial : energy_of_start,
-                                            ten_percent, remedy + ", or refine the mesh"),
-                           energy_off_band(energy_errors, remedy + ", or run less far")};
+  std::vector<Found> found;
+  // A boundary that does work brings energy and fields that the start does not have; the work of a density that reads t is
+  // not known.
+  if (!c.boundary_works())
+    found.push_back(energy_off_start(o, std::isnan(energy_of_start) ? o.energy_initial : energy_of_start, ten_percent,
+                                     remedy + ", or refine the mesh"));
+  if (!c.boundary_works() || !c.theory->is_placed())
+    found.push_back(energy_off_band(energy_errors, remedy + ", or run less far"));
   if (c.has_solution())
     found.push_back(error_beyond_range(o, range_of_solution(c, o.time), remedy + ", or refine the mesh"));
-  else
+  else if (!c.boundary_works())
     found.push_back(field_beyond_data(largest(last_row), std::max(largest(c.values()), o.time * largest(c.rates())),
                                       "the steps are too long, or the theory has no bounds; " + remedy));
   std::vector<std::string> all;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tools/files/hdf5_handle.hpp"
 #include "tools/report/failure.hpp"
 
@@ -59,10 +60,18 @@ class FramesFile {
   Hdf5Handle file_;
 };
 
+/// Numbers that follow each other by one difference above 0, from the first on.
+std::size_t run_length(std::span<const std::int32_t> numbers) {
+  if (numbers.size() < 2 || numbers[1] <= numbers[0]) return 1;
+  std::size_t n = 2;
+  while (n < numbers.size() && numbers[n] - numbers[n - 1] == numbers[1] - numbers[0]) ++n;
+  return n;
+}
+
 }  // namespace
 
 void write_frames_file(const std::filesystem::path& folder, const std::vector<SharedRows>& shared, std::size_t frames,
-                       std::size_t sites, bool together, const std::string& moving) {
+                       std::size_t sites, const FurtherFrames& further) {
   quiet_hdf5();
   FramesFile file(folder / frames_file_name);
   for (const SharedRows& rows : shared) {
@@ -71,22 +80,37 @@ void write_frames_file(const std::filesystem::path& folder, const std::vector<Sh
     for (std::size_t a = 0; a < rows.components.size(); ++a) {
       const std::string& name = rows.components[a];
       file.group(name);
-      const auto part = [&](std::size_t first, std::size_t count, const Extent& shape, const std::string& which) {
-        file.add(name + "/" + which, shape, [&](hid_t, const auto& from) {
-          file.require(rows.has_components ? select(source, {first, 0, a}, {}, {count, sites, 1})
-                                           : select(source, {first, 0}, {}, {count, sites}));
+      // Sites of frame n: `count` of them, each `stride` after the one before.
+      const auto in_frame = [&](std::size_t n, std::size_t first, std::size_t stride, std::size_t count) {
+        return rows.has_components ? select(source, {n, first, a}, {1, stride, 1}, {1, count, 1})
+                                   : select(source, {n, first}, {1, stride}, {1, count});
+      };
+      const std::span<const std::int32_t> copies = further.copies;
+      for (std::size_t n = 0; n < frames; ++n)
+        file.add(name + "/" + fmt::to_string(n), {sites + copies.size()}, [&](hid_t target, const auto& from) {
+          file.require(select(target, {0}, {}, {sites}) && in_frame(n, 0, 1, sites));
+          from(rows.data_set, source);
+          for (std::size_t first = 0, length = 0; first < copies.size(); first += length) {
+            length = run_length(copies.subspan(first));
+            const std::size_t apart = length > 1 ? at(copies[first + 1] - copies[first]) : 1;
+            file.require(select(target, {sites + first}, {}, {length}) &&
+                         in_frame(n, at(copies[first]), apart, length));
+            from(rows.data_set, source);
+          }
+        });
+      if (further.together)
+        file.add(name + "/all", {frames, sites}, [&](hid_t, const auto& from) {
+          file.require(rows.has_components ? select(source, {0, 0, a}, {}, {frames, sites, 1})
+                                           : select(source, {0, 0}, {}, {frames, sites}));
           from(rows.data_set, source);
         });
-      };
-      for (std::size_t n = 0; n < frames; ++n) part(n, 1, {sites}, fmt::to_string(n));
-      if (together) part(0, frames, {frames, sites}, "all");
     }
   }
-  if (!moving.empty())
+  if (!further.moving.empty())
     file.add("places", {frames * sites, 2}, [&](hid_t target, const auto& from) {
       const Hdf5Handle positions = space_of({frames, sites}), times = space_of({frames});
       file.require(select(target, {0, 0}, {}, {frames * sites, 1}));
-      from(moving, positions);
+      from(further.moving, positions);
       for (std::size_t i = 0; i < sites; ++i) {  // every time beside each site of its frame
         file.require(select(target, {i, 1}, {sites, 1}, {frames, 1}));
         from("/time", times);

@@ -55,7 +55,7 @@ void write_lattice_xdmf(const std::filesystem::path& folder, const RowNames& nam
     }
   }
   if (names.mesh) shared.push_back({"/mesh", {"places_of_sites"}, false});
-  write_frames_file(folder, shared, frames, sites, true, names.mesh ? "/mesh" : "");
+  write_frames_file(folder, shared, frames, sites, {.together = true, .moving = names.mesh ? "/mesh" : "", .copies = {}});
 
   const std::string both = fmt::format("{} {}", frames, sites);
   std::string surface = "<Grid Name=\"over x and t\">\n";

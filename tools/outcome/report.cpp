@@ -3,11 +3,20 @@
 
 #include <cmath>
 
+#include "lattice/space/mesh_space.hpp"
 #include "schemes/driven_ends.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/in_words.hpp"
 
 namespace delf {
+namespace {
+
+bool has_driven_boundary(const Problem& p) {
+  if (const auto& mesh = p.lattice.mesh()) return !(mesh->driven.empty() && mesh->fluxes.empty());
+  return !key_of_driven_end(p).empty();
+}
+
+}  // namespace
 
 std::string scheme_in_words(const Problem& p) {
   const std::string scheme = scheme_label(p);
@@ -92,7 +101,7 @@ std::string report(const Subject& subject, const Scene& scene, const Outcome& o)
   for (const Conserved& c : o.conserved)
     if (c.at_walls)
       line("at walls", fmt::format("{} = {:.10g}; {}", c.name, c.final,
-                                   key_of_driven_end(p).empty() ? "fixed walls take it" : "the ends give or take it"));
+                                   has_driven_boundary(p) ? "the ends give or take it" : "fixed walls take it"));
     else if (std::isfinite(c.final))
       line("conserved", fmt::format("{} = {:.10g}; error {:.3g} at most", c.name, c.final, c.error_max));
   if (std::isfinite(o.constraint_max)) line("constraint", fmt::format("{:.3g} at most", o.constraint_max));

@@ -13,6 +13,7 @@
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/scene/keys.hpp"
+#include "tools/scene/program_keys.hpp"
 
 namespace delf {
 namespace {
@@ -118,8 +119,8 @@ void declare_parts(Settings& settings) {
     if (s.key.starts_with(of_boundary) && !settings.key(s.key))
       settings.declare({{.key = s.key,
                          .fallback = "",
-                         .help = "the part of this name of a mesh's boundary",
-                         .choices = {"fixed", "natural"},
+                         .help = "the part of this name of a mesh's boundary: see boundary.mesh",
+                         .choices = {"fixed", "natural", "periodic:PART", formula_choice},
                          .otherwise = "as boundary.mesh"},
                         DeclaredBy::scene,
                         {}});

@@ -185,7 +185,8 @@ std::vector<Parameter> scene_keys() {
        .otherwise = "nothing"},
       {.key = "boundary.mesh",
        .fallback = "fixed",
-       .help = "the boundary of a mesh; boundary.NAME is the same for a part that its file names, or a side",
+       .help = "the boundary of a mesh; boundary.NAME is a part of it, also a formula of t, x, y, z or periodic:PART; "
+               "boundary.NAME.flux flows in there; boundary.part.NAME has the name of another key",
        .choices = {"fixed", "natural"}},
       {.key = "boundary.winding",
        .fallback = 0,

@@ -21,7 +21,7 @@ SpaceRows::SpaceRows(const CellSpace& space, std::span<const double> times)
   for (int j = 0; j <= last; ++j)
     for (int s = 0; s < rows.per_row(); ++s) {
       const bool multiplier = s >= fields;
-      if (space.fixed[multiplier ? s - fields : s / rows.per_point()]) continue;
+      if (space.fixed[rows.point_of(s)]) continue;
       // λ of the last row is in no equation, and G there is one for its fields; G of row 1 is in the data.
       system_.set_role(j * rows.per_row() + s, j == 0      ? SiteRole::given
                                                : j == last ? multiplier ? SiteRole::initial : SiteRole::final
