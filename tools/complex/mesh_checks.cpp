@@ -115,9 +115,9 @@ void MeshChecks::look_at_equations(const CheckedRows& given, const std::string& 
   const RegionSystem& everywhere = *given.everywhere;
   const RegionSystem::Values y = everywhere.restricted(given.rows);
   const std::vector<Balance> E = everywhere.residual(y);
-  const std::vector<double> sizes = everywhere.sizes(y);
+  const std::vector<double> equation_sizes = everywhere.sizes(y);
   double size = 0, terms = 0;
-  for (const double own : sizes) size = larger_or_nan(own, size);
+  for (const double own : equation_sizes) size = larger_or_nan(own, size);
   for (const Balance& one : E) terms = larger_or_nan(one.absolute, terms);
   // The terms are differences of rows, which the last digits of the values change: |E| ≤ ε Σ |∂E/∂y y| is none. Where all
   // terms are rounding, as the differences of a constant field, they are no scale.
@@ -126,7 +126,7 @@ void MeshChecks::look_at_equations(const CheckedRows& given, const std::string& 
   for (std::size_t n = 0; n < E.size(); ++n) {
     const std::size_t node = everywhere.equations()[n];
     // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients.
-    const double own = scene_.time == MeshTime::cells ? sizes[node] : scale;
+    const double own = scene_.time == MeshTime::cells ? equation_sizes[node] : scale;
     if (equations_.take({E[n].sum, own, E[n].count}, where))
       equations_.region = fmt::format("{}, {}", name_of(given, everywhere.node(node).site), where),
       worst_site_ = equations_.region;
