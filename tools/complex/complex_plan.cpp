@@ -61,9 +61,8 @@ void plan_mesh(const ComplexScene& c) {
              : held == 0    ? ", natural"
              : held < walls ? fmt::format(", {} fixed, {} natural", held, walls - held)
                             : ", fixed");
-  if (!space.driven.empty() || !space.fluxes.empty())
-    fmt::print("             {} points follow boundary formulas, and something flows in at {}\n", space.driven.size(),
-               space.fluxes.size());
+  if (!space.driven.empty()) fmt::print("             {} points are driven\n", space.driven.size());
+  if (!space.fluxes.empty()) fmt::print("             something flows in at {} points\n", space.fluxes.size());
   fmt::print("             {}\n", c.topology_in_words());
   const std::size_t values = 8 * space.fields_of_row();
   if (c.time == MeshTime::none) {

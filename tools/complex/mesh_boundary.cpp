@@ -38,10 +38,10 @@ struct NamedPart {
   }
 };
 
-/// A word that is no formula: letters alone.
-bool is_word(const std::string& text) {
-  return text.size() > 1 && text != "pi" &&
-         std::ranges::all_of(text, [](char c) { return std::isalpha(c) || c == '-'; });
+/// A word that is no formula: letters alone, and not the name of a number.
+bool is_word(const std::string& text, const std::vector<std::pair<std::string, double>>& numbers) {
+  return text.size() > 1 && text != "pi" && text.find_first_not_of("abcdefghijklmnopqrstuvwxyz") == std::string::npos &&
+         std::ranges::find(numbers, text, &std::pair<std::string, double>::first) == numbers.end();
 }
 
 }  // namespace
@@ -107,21 +107,23 @@ MeshBoundary::MeshBoundary(const Settings& settings, const Mesh& mesh, bool othe
   for (const Setting& s : settings.all()) {
     if (!s.key.starts_with(of_boundary) || s.key == "boundary.mesh") continue;
     if (&s != settings.find(s.key)) continue;  // the command line wins
-    const auto [part, is_flux] = NamedPart(mesh, s.key);
+    const NamedPart named(mesh, s.key);
+    const std::string& part = named.part;
+    const bool is_flux = named.is_flux;
     if (!has_part(mesh, part)) {
       std::vector<std::string> names;
-      for (const Mesh::Part& named : mesh.parts) names.push_back(named.name);
+      for (const Mesh::Part& one : mesh.parts) names.push_back(one.name);
       throw settings.error(
           s.key, mesh.parts.empty()
                      ? "the boundary of this mesh has no named parts; use boundary.mesh"
                      : fmt::format("the mesh has no part of this name; its parts are {}", fmt::join(names, ", ")));
     }
     const auto data = [&] { return std::make_shared<const Data>(settings, s.key, s.value, part, fields, numbers); };
+    if (const auto [known, fresh] = keys.try_emplace(is_flux ? part + std::string(of_flux) : part, s.key); !fresh)
+      throw settings.error(s.key, fmt::format("is the part that {} names too; leave one of them out", known->second));
     if (is_flux) {
       fluxes_.push_back(data());
     } else {
-      if (const auto [known, fresh] = keys.try_emplace(part, s.key); !fresh)
-        throw settings.error(s.key, fmt::format("is the part that {} names too; leave one of them out", known->second));
       if (s.value == "fixed" || s.value == "natural") {
         conditions_.push_back({part, s.value == "fixed"});
         if (s.value == "fixed") held[part] = s.key;
@@ -131,7 +133,7 @@ MeshBoundary::MeshBoundary(const Settings& settings, const Mesh& mesh, bool othe
         joined_.push_back({part, trimmed(std::string_view(s.value).substr(periodic.size()))});
         continue;
       }
-      if (is_word(s.value))
+      if (is_word(s.value, numbers))
         throw settings.error(
             s.key,
             "a part of a mesh is fixed, natural, periodic:PART, or moves by a formula of t, x, y and z; "

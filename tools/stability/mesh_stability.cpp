@@ -39,6 +39,9 @@ bool stays(const ComplexScene& c, const NamedScheme& scheme, double h) {
   Problem problem = c.problem_on_mesh();
   problem.method = scheme.problem.method, problem.parameters = scheme.problem.parameters;
   problem.time_step = h;
+  // a boundary that is driven is no small wave
+  if (c.boundary_works())
+    problem.lattice = Lattice::on(std::make_shared<MeshSpace>(MeshSpace{c.space->mesh, c.space->fixed}));
   Simulation simulation(problem);
   std::mt19937_64 random(c.scene.initial.seed);
   std::normal_distribution<double> normal;

@@ -138,8 +138,12 @@ TEST_CASE("a driven run goes on from its middle to the bit, is verified, and pla
     CHECK(verified.code == 0);
     CHECK(delf_program(folder, "verify s.ini --out v --run.until=2 --verify.fault=field" + keys + method).code == 1);
   }
-  CHECK(contains(delf_program(folder, "plan s.ini" + keys).out,
-                 "6 points follow boundary formulas, and something flows in at 6"));
+  const std::string plan = delf_program(folder, "plan s.ini" + keys).out;
+  CHECK(contains(plan, "6 points are driven\n"));
+  CHECK(contains(plan, "something flows in at 6 points\n"));
+  const Ran limits = delf_program(folder, "stability s.ini --lattice.mesh=quadrilaterals:3,1,6,2 --out l" + keys);
+  CAPTURE(limits.out);
+  CHECK(limits.code == 0);
   CHECK(
       contains(delf_program(folder, "run s.ini --theory.name=wave --out out" + keys).out, "the ends give or take it"));
 }
@@ -250,6 +254,8 @@ TEST_CASE("conditions that a mesh's boundary cannot have are refused in one line
           {"is for a natural part, and boundary.left keeps the value"});
   refused("rows.ini --boundary.middle.flux=t", {"the mesh has no part of this name"});
   refused("rows.ini --boundary.left='sin(t)' --boundary.part.left=fixed", {"is the part that boundary.left names too"});
+  refused("rows.ini --boundary.left.flux=t --boundary.part.left.flux=t",
+          {"is the part that boundary.left.flux names too"});
   refused("rows.ini --boundary.left='sin(t)' --lattice.time=cells",
           {"cells with steps of their own have boundaries that are fixed or natural"});
   refused("rows.ini --boundary.left.flux='sin(t)' --theory.fibre=S1",
@@ -268,6 +274,8 @@ TEST_CASE("conditions that a mesh's boundary cannot have are refused in one line
           {"theory.density", "reads x, which jumps where the mesh is joined"});
   refused("rows.ini --boundary.left=periodic:right --lattice.mesh=quadrilaterals:10,1,2,5",
           {"take three cells at least from one part to the other"});
+  for (const char* formula : {"-t", "mass", "pi"})  // names of numbers, and signs, are formulas
+    CHECK(delf_program(folder, std::string("plan rows.ini --theory.mass=0.5 --boundary.left=") + formula).code == 0);
   const Ran breaks = delf_program(folder, "run rows.ini --out out --boundary.left='sin(t)*sqrt(3 - t)'");
   CHECK(breaks.code == 2);
   CHECK(contains(breaks.err, "boundary.left = sin(t)*sqrt(3 - t): has no finite value or rate at t = 3.06, (0, 0, 0)"));
