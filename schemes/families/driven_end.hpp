@@ -48,6 +48,7 @@ class DrivenEnd final : public StencilFamily {
     varied_.assign(motion_.size(), false);
   }
 
+  const DrivenEnd* driven_end() const override { return this; }
   bool is_left() const { return pattern().placement == Placement::left_wall; }
   double value(int field, double t) const { return motion_[at(field)](t); }
   double rate(int field, double t) const { return motion_[at(field)].by_t(t); }
@@ -77,7 +78,7 @@ class DrivenEnd final : public StencilFamily {
 /// so that the wall has ±∂ℓ/∂φ_x = f, at the left and at the right: of ℓ = … − ½φ_x² f is the slope along the outer normal,
 /// and the force on the field.
 struct WallFlux {
-  static constexpr bool placed = true;
+  static constexpr bool placed = true, is_flux = true;
 
   Placement wall;
   FormulasOfTime flux;
