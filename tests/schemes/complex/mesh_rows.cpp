@@ -5,6 +5,7 @@
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/index.hpp"
+#include "schemes/complex/complex_noether.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/methods/mesh_rows.hpp"
 #include "schemes/system/conserved.hpp"
@@ -74,6 +75,15 @@ Balance MeshRows::momentum(const LinearSymmetry& symmetry) const {
   Balance balance;
   balance.sum =
       noether_charge(evolution_.system(), evolution_.stepper().window(2), newest(), symmetry, &balance.absolute);
+  return balance;
+}
+
+Balance MeshCells::momentum(const LinearSymmetry& symmetry, double t) const {
+  const std::vector<double> values = stepper.values(t), momenta = stepper.momenta(t);
+  const std::size_t d = symmetry.shift.size();
+  Balance balance;
+  for (std::size_t n = 0; n < values.size(); ++n)
+    balance.add(momenta[n] * generator_at(symmetry, n % d, values.data() + n - n % d));
   return balance;
 }
 

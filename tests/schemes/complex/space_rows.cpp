@@ -10,7 +10,6 @@
 #include "jets/batch_of.hpp"
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
-#include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_form.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/complex/first_and_last_step.hpp"
@@ -24,6 +23,7 @@
 namespace {
 
 using namespace delf;
+using delf::testing::MeshCells;
 using delf::testing::MeshRows;
 
 std::shared_ptr<const BatchDensity> wave() { return expression("0.5*phi_t^2 - 0.5*phi_x^2"); }
@@ -316,11 +316,11 @@ TEST_CASE("cells with steps of their own read t and x when they act: of order 2 
       const auto cell = space.mesh.cell(c);
       steps.push_back(courant * std::abs(space.mesh.points[cell[1]][0] - space.mesh.points[cell[0]][0]));
     }
-    AsynchronousEvolution evolution(space, steps);
+    MeshCells cells(space, steps);
     const std::vector<double> start = at_points(space.mesh, manufactured_solution, 0);
-    evolution.start(start, std::vector<double>(start.size(), 0.0));
-    evolution.advance(1);
-    return evolution.values(1);
+    cells.stepper.start_rates(start, std::vector<double>(start.size(), 0.0));
+    cells.stepper.advance(1);
+    return cells.stepper.values(1);
   };
   const std::vector<double> limit = values(0.4 / 64), exact = at_points(space.mesh, manufactured_solution, 1);
   const auto distance = [&](const std::vector<double>& now) {
