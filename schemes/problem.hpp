@@ -25,6 +25,8 @@ struct Problem {
   int threads = 1;                          ///< run.threads: that explicit steps are shared by
   std::optional<double> step_control = {};  ///< s of steps that the rows choose; time_step is ε then
   std::vector<double> time_steps = {};      ///< lengths of the steps, over and over; empty: all are time_step
+  /// Cells of a mesh with steps of their own: the step of each over its shortest edge. 0: all sites step together.
+  double cell_courant = 0;
 };
 
 /// The problem with the fallbacks of all parameters that its theory and its method read. Throws BadInput for unknown

@@ -60,12 +60,13 @@ SchemeParts make_parts(const FieldTheory& theory, const Problem& p) {
 }
 
 Evolution make_evolution(SchemeParts parts, const Problem& p) {
-  return {p.lattice,
-          std::move(parts.families),
-          p.time_step,
-          {p.tolerance, p.predictor_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real,
-           monodromy_of(p), p.threads, std::move(parts.processor), p.step_control || !p.time_steps.empty()},
-          std::move(parts.components)};
+  return {
+      p.lattice,
+      std::move(parts.families),
+      p.time_step,
+      {p.tolerance, p.predictor_order, p.max_iterations, p.circle_valued ? Fibre::circle : Fibre::real, monodromy_of(p),
+       p.threads, std::move(parts.processor), p.step_control || !p.time_steps.empty(), std::move(parts.stepper)},
+      std::move(parts.components)};
 }
 
 }  // namespace

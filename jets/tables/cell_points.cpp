@@ -68,6 +68,36 @@ std::vector<double> corner_shares(const Mesh& mesh, int cell) {
   return shares;
 }
 
+std::vector<TablePoint> gradient_table(const Mesh& mesh, int cell, bool coupled) {
+  std::vector<TablePoint> points;
+  for (const CellPoint& q : cell_points(mesh, cell))
+    for (const std::vector<double>& slope : q.slopes) {
+      TablePoint point{.weight = q.weight, .slots = {}};
+      const auto set = [&](JetSlot slot, const std::vector<double>& weights) {
+        for (std::size_t l = 0; l < weights.size(); ++l)
+          point.slots[at(static_cast<int>(slot))].push_back({static_cast<int>(l), weights[l]});
+      };
+      if (coupled) set(JetSlot::phi, q.value);
+      TablePoint without = point;
+      set(JetSlot::phi_x, slope);
+      points.push_back(std::move(point));
+      without.weight = -q.weight;
+      if (coupled) points.push_back(std::move(without));
+    }
+  return points;
+}
+
+std::vector<TablePoint> cell_table(const Mesh& mesh, int cell, bool coupled) {
+  std::vector<TablePoint> points = gradient_table(mesh, cell, coupled);
+  const std::vector<double> shares = corner_shares(mesh, cell);
+  for (std::size_t l = 0; l < shares.size(); ++l) {
+    TablePoint point{.weight = shares[l], .slots = {}};
+    point.slots[at(static_cast<int>(JetSlot::phi))] = {{static_cast<int>(l), 1.0}};
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
 std::vector<double> lumped_masses(const Mesh& mesh) {
   std::vector<double> masses(mesh.points.size(), 0.0);
   for (int c = 0; c < mesh.cells(); ++c) {

@@ -2,11 +2,13 @@
 #include "schemes/complex/complex_system.hpp"
 
 #include <algorithm>
+#include <boost/container_hash/hash.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "jets/simd/scratch_rows.hpp"
 #include "lattice/error.hpp"
@@ -98,8 +100,14 @@ int ComplexSystem::Family::add_table(std::span<const TablePoint> points) {
   }
   if (!same)
     throw BadInput("lattice.mesh", "a table of another form than the first of its family; make it one more family");
-  tables_.push_back(std::move(numbers));
-  return static_cast<int>(tables_.size()) - 1;
+  const std::size_t hash = boost::hash_value(numbers);
+  const auto [begin, end] = known_.equal_range(hash);
+  for (auto other = begin; other != end; ++other)
+    if (std::ranges::equal(table(other->second), numbers)) return other->second;
+  const auto number = static_cast<std::int32_t>(known_.size());
+  known_.emplace(hash, number);
+  tables_.insert(tables_.end(), numbers.begin(), numbers.end());
+  return number;
 }
 
 std::vector<double> ComplexSystem::Family::places(std::span<const Complex::Position> vertices) const {
@@ -113,18 +121,34 @@ std::vector<double> ComplexSystem::Family::places(std::span<const Complex::Posit
   return places;
 }
 
-/// The tables of some stencils: measures are in the weights of points, and steps in those of derivatives in time.
+/// The tables of some stencils: measures are in the weights of points, and steps in those of derivatives in time. Stencils of
+/// one table, measure and step share their numbers, unless each has its place besides.
 std::shared_ptr<const JetFamily> ComplexSystem::Family::on(std::shared_ptr<const ListedStencils> sites,
                                                            const Stencils& stencils) const {
   OwnWeights own{std::move(sites), std::vector<std::vector<double>>(powers_.size())};
-  for (std::size_t n = 0; n < powers_.size(); ++n)
-    for (std::size_t s = 0; s < stencils.tables.size(); ++s) {
-      double number = tables_[stencils.tables[s]][n];
+  std::vector<std::size_t> first;  // stencil of each set
+  using Key = std::tuple<std::int32_t, double, double>;
+  std::unordered_map<Key, std::int32_t, boost::hash<Key>> known;
+  for (std::size_t s = 0; s < stencils.tables.size(); ++s) {
+    const auto next = static_cast<std::int32_t>(first.size());
+    const std::int32_t set =
+        is_placed()
+            ? next
+            : known.try_emplace({stencils.tables[s], stencils.measures[s], stencils.steps[s]}, next).first->second;
+    if (set == next) first.push_back(s);
+    own.sets.push_back(set);
+  }
+  if (first.size() == own.sets.size()) own.sets = {};
+  for (std::size_t n = 0; n < powers_.size(); ++n) {
+    own.numbers[n].reserve(first.size());
+    for (const std::size_t s : first) {
+      double number = table(stencils.tables[s])[n];
       for (int power = powers_[n].time; power > 0; --power) number /= stencils.steps[s];
       own.numbers[n].push_back(number);
     }
+  }
   for (const TablePoint& point : table_.points)
-    for (std::size_t s = 0; s < stencils.measures.size(); ++s) own.numbers[point.own.weight][s] *= stencils.measures[s];
+    for (std::size_t n = 0; n < first.size(); ++n) own.numbers[point.own.weight][n] *= stencils.measures[first[n]];
   for (std::size_t n = 0; is_placed() && n < 2 * form_.size(); ++n) {
     own.numbers.emplace_back();
     for (const auto& places : stencils.places) own.numbers.back().push_back(places[n]);

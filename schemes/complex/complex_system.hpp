@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -39,7 +40,7 @@ class ComplexSystem {
     /// A family of a lattice: L of its stencils as it is, with their numbers in the place of tables, and t that of the first site.
     explicit Family(std::shared_ptr<const StencilFamily>);
 
-    /// The number of a table. Throws BadInput where its slots have not the vertices of the form.
+    /// The number of a table; equal ones have the same. Throws BadInput where its slots have not the vertices of the form.
     int add_table(std::span<const TablePoint>);
 
     int vertices() const { return vertices_; }
@@ -49,6 +50,9 @@ class ComplexSystem {
 
    private:
     friend class ComplexSystem;
+    std::span<const double> table(std::int32_t number) const {
+      return std::span(tables_).subspan(at(number) * powers_.size(), powers_.size());
+    }
     bool is_placed() const { return density_ ? density_->is_placed() : family_->is_placed(); }
     /// The place and the time of each point, of a stencil with these vertices.
     std::vector<double> places(std::span<const Complex::Position> vertices) const;
@@ -61,7 +65,8 @@ class ComplexSystem {
     std::vector<std::vector<TablePoint::Entry>> places_;  ///< of the points: weights of the vertices
     std::vector<TablePoint> form_;
     std::vector<SlotPowers> powers_;  ///< of each number of a table
-    std::vector<std::vector<double>> tables_;
+    std::vector<double> tables_;      ///< the numbers of one after the other
+    std::unordered_multimap<std::size_t, std::int32_t> known_;  ///< tables, by their hashes
     std::vector<char> coupled_;  ///< [i·size + m]
     bool reads_time_ = false;
   };

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "jets/tables/cell_points.hpp"
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
+#include "schemes/families/mesh_families.hpp"
 
 namespace delf {
 namespace {
@@ -53,11 +53,10 @@ SpaceTables::SpaceTables(std::shared_ptr<const BatchDensity> density) : density_
   const int d = density_->components();
   if (density_->slots() > 3) refuse("has second derivatives");
   for (int a = 0; a < d; ++a)
-    for (int b = 0; b < d; ++b) {
+    for (int b = 0; b < d; ++b)
       if (!density_->is_zero(d + a, b) || !density_->is_zero(d + a, 2 * d + b))
         refuse("couples phi_t with phi or phi_x");
-      coupled_ = coupled_ || !density_->is_zero(2 * d + a, b);
-    }
+  coupled_ = couples_gradient(*density_);
   if (!is_quadratic(*density_)) refuse("is not quadratic in phi_x");
 }
 
@@ -71,36 +70,6 @@ std::vector<TablePoint> SpaceTables::site_table() const {
   TablePoint point;
   point.set(JetSlot::phi, {1});
   return {point};
-}
-
-std::vector<TablePoint> SpaceTables::gradient_table(const Mesh& mesh, int cell) const {
-  std::vector<TablePoint> points;
-  for (const CellPoint& q : cell_points(mesh, cell))
-    for (const std::vector<double>& slope : q.slopes) {
-      TablePoint point{.weight = q.weight, .slots = {}};
-      // Every corner has an entry, so that all tables have one form.
-      for (std::size_t l = 0; l < slope.size(); ++l) {
-        point.slots[at(static_cast<int>(JetSlot::phi_x))].push_back({static_cast<int>(l), slope[l]});
-        if (coupled_) point.slots[at(static_cast<int>(JetSlot::phi))].push_back({static_cast<int>(l), q.value[l]});
-      }
-      points.push_back(point);
-      if (!coupled_) continue;
-      point.slots[at(static_cast<int>(JetSlot::phi_x))].clear();
-      point.weight = -q.weight;
-      points.push_back(point);
-    }
-  return points;
-}
-
-std::vector<TablePoint> SpaceTables::cell_table(const Mesh& mesh, int cell) const {
-  std::vector<TablePoint> points = gradient_table(mesh, cell);
-  const std::vector<double> shares = corner_shares(mesh, cell);
-  for (std::size_t l = 0; l < shares.size(); ++l) {
-    TablePoint point{.weight = shares[l], .slots = {}};
-    point.slots[at(static_cast<int>(JetSlot::phi))] = {{static_cast<int>(l), 1.0}};
-    points.push_back(point);
-  }
-  return points;
 }
 
 ComplexSystem::Family SpaceTables::motion() const {

@@ -33,9 +33,13 @@ class SpaceTables {
   ComplexSystem::Family gradient(int corners) const;
 
   /// With the measure of the cell in its weights.
-  std::vector<TablePoint> gradient_table(const Mesh&, int cell) const;
+  std::vector<TablePoint> gradient_table(const Mesh& mesh, int cell) const {
+    return delf::gradient_table(mesh, cell, coupled_);
+  }
   /// The potential of a cell, its sites and gradient in one: for cells with a time step of their own.
-  std::vector<TablePoint> cell_table(const Mesh&, int cell) const;
+  std::vector<TablePoint> cell_table(const Mesh& mesh, int cell) const {
+    return delf::cell_table(mesh, cell, coupled_);
+  }
   ComplexSystem::Family cell(int corners) const;
 
  private:

@@ -39,11 +39,8 @@ class Families {
         form.push_back(-1);
       }
     auto& family = families_[{e.shape, form}];
-    if (!family.number)
-      family.number = system_.add_family(ComplexSystem::Family(density_, static_cast<int>(e.sites.size()), points));
-    // equal steps have equal tables: the last one is kept at hand
-    if (!same(family.last, points)) family.table = system_.add_table(*family.number, points), family.last = points;
-    system_.add_stencil(*family.number, e.sites, family.table, e.share.value_or(table.measure));
+    if (!family) family = system_.add_family(ComplexSystem::Family(density_, static_cast<int>(e.sites.size()), points));
+    system_.add_stencil(*family, e.sites, system_.add_table(*family, points), e.share.value_or(table.measure));
   }
 
   void add_part(const StencilList::Entry& e) {
@@ -52,14 +49,14 @@ class Families {
     auto& family = families_[{e.shape, {size}}];
     const Complex::Position& p = list_.sites[e.sites.front()].position;
     if (e.shape == "motion") {
-      if (!family.number) family.number = system_.add_family(space_->motion());
+      if (!family) family = system_.add_family(space_->motion());
       const double h = list_.sites[e.sites[1]].position[0] - p[0];
-      system_.add_stencil(*family.number, e.sites, 0, *e.share * h, h);
+      system_.add_stencil(*family, e.sites, 0, *e.share * h, h);
     } else if (e.shape == "site") {
-      if (!family.number) family.number = system_.add_family(space_->site());
-      system_.add_stencil(*family.number, e.sites, 0, *e.share);
+      if (!family) family = system_.add_family(space_->site());
+      system_.add_stencil(*family, e.sites, 0, *e.share);
     } else {
-      if (!family.number) family.number = system_.add_family(space_->gradient(size));
+      if (!family) family = system_.add_family(space_->gradient(size));
       Mesh cell{.points = {}, .vertices = {}};
       std::vector<std::int32_t> corners;
       for (const Complex::Position& corner : list_.positions(e)) {
@@ -67,32 +64,15 @@ class Families {
         cell.points.push_back({corner[1], corner[2], corner[3]});
       }
       cell.add_cell(corners);
-      system_.add_stencil(*family.number, e.sites, system_.add_table(*family.number, space_->gradient_table(cell, 0)),
-                          *e.share);
+      system_.add_stencil(*family, e.sites, system_.add_table(*family, space_->gradient_table(cell, 0)), *e.share);
     }
   }
 
-  bool same(const std::vector<TablePoint>& a, const std::vector<TablePoint>& b) const {
-    if (a.size() != b.size()) return false;
-    for (std::size_t q = 0; q < a.size(); ++q) {
-      if (a[q].weight != b[q].weight) return false;
-      for (std::size_t slot = 0; slot < at(density_->slots()); ++slot)
-        for (std::size_t n = 0; n < a[q].slots[slot].size(); ++n)
-          if (a[q].slots[slot][n].weight != b[q].slots[slot][n].weight) return false;
-    }
-    return true;
-  }
-
-  struct Family {
-    std::optional<int> number = {};
-    int table = 0;
-    std::vector<TablePoint> last = {};
-  };
   ComplexSystem& system_;
   const StencilList& list_;
   std::shared_ptr<const BatchDensity> density_;
   std::optional<SpaceTables> space_;
-  std::map<std::pair<std::string, std::vector<int>>, Family> families_;
+  std::map<std::pair<std::string, std::vector<int>>, std::optional<int>> families_;
 };
 
 }  // namespace

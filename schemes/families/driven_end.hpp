@@ -55,6 +55,7 @@ class DrivenEnd final : public StencilFamily {
     if (functions > 1) through_ = lobatto_rule(functions).points;
   }
 
+  const DrivenEnd* driven_end() const override { return this; }
   bool is_left() const { return pattern().placement == Placement::left_wall; }
   /// Of a node at this part of the step h that begins at t.
   double value(int field, double t, double h, double part) const {
@@ -99,7 +100,7 @@ class DrivenEnd final : public StencilFamily {
 /// so that the wall has ±∂ℓ/∂φ_x = f, at the left and at the right: of ℓ = … − ½φ_x² f is the slope along the outer normal,
 /// and the force on the field.
 struct WallFlux {
-  static constexpr bool placed = true;
+  static constexpr bool placed = true, is_flux = true;
 
   Placement wall;
   FormulasOfTime flux;

@@ -63,9 +63,12 @@ struct JetFamily::Jets {
 
   /// The stencils that at_point() is about to be asked of.
   void look_at(int first, int count) {
-    for (std::size_t n = 0; n < family_.own_.numbers.size(); ++n)
-      for (int s = 0; s < count; ++s)
-        numbers[static_cast<int>(n)][s] = family_.own_.numbers[n][batch_.numbers[first + s]];
+    if (const OwnWeights& own = family_.own_; own.stencils) {
+      std::array<int, most> sets;
+      for (int s = 0; s < count; ++s) sets[s] = own.set(batch_.numbers[first + s]);
+      for (std::size_t n = 0; n < own.numbers.size(); ++n)
+        for (int s = 0; s < count; ++s) numbers[static_cast<int>(n)][s] = own.numbers[n][sets[s]];
+    }
     if (batch_.low == nullptr) return;
     for (int i = 0; i < family_.size(); ++i) {
       const int from = family_.first_[i / d] * d + i % d;
@@ -303,21 +306,14 @@ void JetFamily::energy(const StencilBatch& batch, double* E) const {
   }
 }
 
-int JetFamily::add_own(std::span<const double> numbers) {
-  for (std::size_t n = 0; n < numbers.size(); ++n) own_.numbers[n].push_back(numbers[n]);
-  return static_cast<int>(own_.numbers.front().size()) - 1;
-}
-
 bool JetFamily::adds_to(const Point& point, std::span<const int> equations) const {
   return std::ranges::any_of(equations, [&](int i) { return !point.of_test[i / d_].empty(); });
 }
 
-/// r of a batch that is one stencil in all lanes: mechanics, elements of few cells, cells with steps of their own. Its points stand side by side in one
+/// r of a batch that is one stencil in all lanes: mechanics, elements of few cells. Its points stand side by side in one
 /// pack, and are evaluated at once: 0.6 of a step of Gauss's method of two stages (pendulum), 0.5 of four.
 bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> equations, double* r) const {
-  if (batch.count != lanes || (listed_ ? placed_ || batch.low != nullptr : across_points_.empty())) return false;
-  for (int s = 1; s < lanes && listed_; ++s)
-    if (batch.numbers[s] != batch.numbers[0]) return false;
+  if (batch.count != lanes || across_points_.empty()) return false;
   Pack differences(0.0);
   for (const double* values : {batch.y, batch.low})
     for (int i = 0; values != nullptr && i < size(); ++i)
@@ -333,28 +329,6 @@ bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> 
   const auto scales = slot_scales(batch.cell);
   const double area = of_.table.measure * batch.cell.time_step * batch.cell.space_step;
   fill_zero(r, static_cast<int>(equations.size()) * lanes);
-  // Listed stencils have weights of their own, one for each point.
-  const auto own = [&](int number) { return own_number(number, batch.numbers[0]); };
-  for (std::size_t first = 0; listed_ && first < points_.size(); first += at(lanes)) {
-    const std::size_t count = std::min(at(lanes), points_.size() - first);
-    fill_zero(jets[0], m * lanes);
-    for (std::size_t lane = 0; lane < count; ++lane)
-      for (std::size_t i = 0; i < values_.size(); ++i)
-        for (const Weight& w : points_[first + lane].of_vertex[i / at(d_)])
-          jets[w.slot * d_ + static_cast<int>(i) % d_][lane] +=
-              scales[at(w.slot)] * w.weight * own(w.own) * batch.y[i * at(lanes)];
-    of_.density->gradient({lanes, jets.data(), batch.cell.t, batch.x}, g.data());
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const TablePoint& p = of_.table.points[first + lane];
-      const double weight = area * p.weight * own(p.own.weight);
-      for (std::size_t e = 0; e < equations.size(); ++e)
-        for (const Weight& w : points_[first + lane].of_test[equations[e] / d_])
-          r[e * at(lanes)] +=
-              weight * scales[at(w.slot)] * w.weight * own(w.own) * g[w.slot * d_ + equations[e] % d_][lane];
-    }
-  }
-  for (std::size_t e = 0; listed_ && e < equations.size(); ++e) Pack(r[e * at(lanes)]).store(r + e * at(lanes));
-  if (listed_) return true;
   thread_local std::vector<int> place;  // of a value, or a sum, among the equations
   place.assign(values_.size() + sums_.size(), -1);
   for (std::size_t e = 0; e < equations.size(); ++e) place[equations[e]] = static_cast<int>(e);

@@ -23,8 +23,6 @@ class JetFamily final : public StencilFamily {
   JetFamily(StencilTable, std::shared_ptr<const BatchDensity>, bool values_are_sources = false, OwnWeights = {});
 
   const DensityOnTable* made_of() const override { return &of_; }
-  /// Adds one more row of numbers of listed stencils' own. Returns what a batch calls it.
-  int add_own(std::span<const double> numbers);
 
   using StencilFamily::jacobian;
   using StencilFamily::lagrangian;
@@ -39,7 +37,9 @@ class JetFamily final : public StencilFamily {
   std::optional<ConstantPart> constant_part(const Cell&) const override;
 
   const SourceTerms* sources() const override;
-  double own_number(int number, int stencil) const override { return number < 0 ? 1 : own_.numbers[number][stencil]; }
+  double own_number(int number, int stencil) const override {
+    return number < 0 ? 1 : own_.numbers[number][own_.set(stencil)];
+  }
   void evaluate_sources(int group, const JetBatch& inputs, double* const* g) const override;
   void differentiate_sources(int group, const JetBatch& inputs, double* const* d) const override;
 

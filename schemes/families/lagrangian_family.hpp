@@ -43,6 +43,10 @@ class LagrangianFamily final : public StencilFamily {
     return lagrangian_(y, cell);
   }
 
+  bool is_flux() const override {
+    return requires { L::is_flux; };
+  }
+
   bool lagrangian(const StencilBatch& batch, double* values) const override {
     std::vector<double> y(values_.size());
     for (int s = 0; s < batch.count; ++s) {

@@ -14,7 +14,6 @@
 #include "schemes/families/jet_family.hpp"
 
 namespace delf {
-namespace {
 
 bool couples_gradient(const BatchDensity& density) {
   const int d = density.components();
@@ -23,6 +22,8 @@ bool couples_gradient(const BatchDensity& density) {
       if (!density.is_zero(2 * d + a, b)) return true;
   return false;
 }
+
+namespace {
 
 /// One site: its mass and its place are its own.
 StencilTable site_space() {

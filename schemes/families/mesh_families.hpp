@@ -10,6 +10,9 @@
 
 namespace delf {
 
+/// True if ∂²ℓ/∂φ∂φ_x is not zero everywhere.
+bool couples_gradient(const BatchDensity&);
+
 /// A table of time on the sites and cells of a mesh, for a density T(φ_t) + V(φ, ∇φ) that is quadratic in ∇φ
 /// (schemes/complex/space_tables.hpp):
 ///

@@ -14,6 +14,7 @@
 namespace delf {
 
 struct DensityOnTable;
+class DrivenEnd;
 struct MeshConstraint;
 struct MovingCell;
 
@@ -126,6 +127,10 @@ class StencilFamily {
   virtual const MovingCell* moving_cell() const { return nullptr; }
   /// The constraint that holds the sites of a mesh at their rows; null: the family is something else.
   virtual const MeshConstraint* mesh_constraint() const { return nullptr; }
+  /// The motion of an end whose value is data for all times; null: the family is something else.
+  virtual const DrivenEnd* driven_end() const { return nullptr; }
+  /// Something flows into a natural wall.
+  virtual bool is_flux() const { return false; }
 
   /// The values of one stencil: r, ∂r/∂y row by row, one of its rows, and L.
   virtual void residual(const Cell&, std::span<const double> y, std::span<double> r) const;

@@ -9,6 +9,7 @@
 #include "lattice/error.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/problem.hpp"
+#include "schemes/stepping/asynchronous_stepper.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/system/constant_mass.hpp"
 #include "schemes/system/momenta.hpp"
@@ -45,7 +46,20 @@ SchemeParts rows_on_mesh(const FieldTheory& theory, const Problem& p) {
     parts.families.push_back(std::move(constraint));
     for (Component& multiplier : multipliers_of(theory)) parts.components.push_back(std::move(multiplier));
   }
+  if (p.cell_courant == 0) return parts;
+  if (theory.constraint())
+    throw BadInput("theory.name",
+                   "theory.name: cells with steps of their own have no constraints; choose lattice.time = rows");
+  parts.stepper = [steps = cell_steps(p.lattice.mesh()->mesh, p.cell_courant)](const LatticeSystem& system) {
+    return std::make_unique<AsynchronousStepper>(system, steps);
+  };
   return parts;
+}
+
+std::vector<double> cell_steps(const Mesh& mesh, double courant) {
+  std::vector<double> steps;
+  for (int cell = 0; cell < mesh.cells(); ++cell) steps.push_back(courant * shortest_edge(mesh, cell));
+  return steps;
 }
 
 RowDensity density_of_mesh_rows(const RowsInTime& rows, std::span<const double> momenta, double strength) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <span>
+#include <vector>
 
 #include "jets/tables/stencil_table.hpp"
+#include "lattice/space/mesh.hpp"
 #include "schemes/methods/method_registry.hpp"
 
 namespace delf {
@@ -12,9 +14,11 @@ namespace delf {
 ///     S = Σ_j Σ_i A_i h_j T((y_i^{j+1} − y_i^j)/h_j) + Σ_j ½ h_j [V(y^j) + V(y^{j+1})],
 ///
 /// explicit where T is quadratic. A constraint holds at every row, λ_j G(y^j): SHAKE on a mesh (Ryckaert, Ciccotti,
-/// Berendsen, J. Comput. Phys. 23, 327, 1977).
+/// Berendsen, J. Comput. Phys. 23, 327, 1977). Where cells have steps of their own, AsynchronousStepper steps the same system.
 const StencilTable& time_of_mesh_rows();
 SchemeParts rows_on_mesh(const FieldTheory&, const Problem&);
+/// h_K of cells with steps of their own: so many times the shortest edge of each.
+std::vector<double> cell_steps(const Mesh&, double courant);
 
 /// Steps that the field chooses and that a run back chooses again (StepDensity), h ≈ ε σ with
 ///

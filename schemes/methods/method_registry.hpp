@@ -22,6 +22,7 @@ struct FieldPoint;
 struct NamedScheme;
 struct Problem;
 struct RowDensity;
+class StepMethod;
 
 /// The parts of a scheme: stencil families over one lattice, and the components that they read.
 struct SchemeParts {
@@ -31,6 +32,8 @@ struct SchemeParts {
       {};                    ///< that the families have: the theory's, where it is its density that they carry
   Processor processor = {};  ///< if rows are those of a kernel
   std::vector<std::string> remarks = {};  ///< lines for `delf plan`
+  /// Makes a stepper of the scheme's own; none: one that follows the plan.
+  std::function<std::unique_ptr<StepMethod>(const LatticeSystem&)> stepper = {};
 };
 
 /// The rule for row 1: the known solution; the field equation at row 0; the discrete Legendre transform there; a step

@@ -66,7 +66,9 @@ const char* in_words(Placement placement) {
 
 std::string solve_in_words(const SolvePlan& plan, const Stepper& stepper) {
   std::string words = plan.describe();
-  const std::string solver = stepper.report(false).solver;
+  const StepReport report = stepper.report(false);
+  const std::string& solver = report.solver;
+  if (!report.follows_plan) return solver;
   if (plan.kind == SolveKind::explicit_ && !stepper.iterates())
     return words + "; solved at once, no iteration" +
            (stepper.is_processed() ? "; rows of a kernel, processed where recorded" : "");

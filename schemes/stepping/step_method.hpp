@@ -2,7 +2,10 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,7 @@
 namespace delf {
 
 class SavedState;
+class StepMethod;
 
 struct StepOptions {
   double tolerance = 1e-14;  ///< of the last change, relative to the largest |y| of the last three rows
@@ -26,6 +30,8 @@ struct StepOptions {
   Processor processor =
       {};  ///< rows are those of a kernel: it gives the first, and is undone on copies that are observed
   bool steps_vary = false;  ///< steps have lengths of their own (LatticeSystem::times): slab by slab alone
+  /// Makes the stepper, where the scheme has one of its own; none: the plan says which.
+  std::function<std::unique_ptr<StepMethod>(const LatticeSystem&)> own_stepper = {};
 };
 
 /// Rounding allows no smaller one: Stepper takes this in its place.
@@ -54,6 +60,7 @@ struct StepState {
   int iterations = 0;        ///< of the last step: evaluations of the nonlinear part; 0 if it was solved at once
   Continued continued = Continued::no;  ///< of the last step
   int held = 2;  ///< newest rows that are there at least: a step that is not checked leaves fewer
+  std::int64_t updates = 0;  ///< of cells with steps of their own; 0 where all sites step together
 };
 
 /// The properties of a stepper.
@@ -61,14 +68,15 @@ struct StepReport {
   int starting_rows = 2;
   std::vector<int> behind = {};  ///< of each component, rows before the newest that its newest is; none: 0
   bool iterates = true, matrix_free = false;
+  bool follows_plan = true;                  ///< false: the plan is that of steps which all sites take together
   std::string solver = {};                   ///< in words
   const RowLayout* layout = nullptr;         ///< of rows by lanes; null when stepped slab by slab
   std::size_t bytes = 0, bytes_to_come = 0;  ///< allocated now; on top while it steps, and by residual() if asked for
   std::string memory = {};                   ///< both, in parts
 };
 
-/// The interface of steppers: by whole rows (RowStepper), by sub-steps (CompositionStepper) or slab by slab
-/// (SlabStepper). Stepper, which chooses one, says what the functions do.
+/// The interface of steppers: by whole rows (RowStepper), by sub-steps (CompositionStepper, KickStepper), slab by slab
+/// (SlabStepper) or cell by cell (AsynchronousStepper). Stepper, which chooses one, says what the functions do.
 class StepMethod {
  public:
   virtual ~StepMethod() = default;
@@ -91,6 +99,10 @@ class StepMethod {
   }
   virtual double residual() const = 0;
   virtual void newest_pair(const double** /*rows*/) const {}
+  /// The momenta at the newest row, [i·C + c], where they are no halves of equations between rows; empty: they are.
+  virtual std::vector<double> own_momenta() const { return {}; }
+  /// The time at which each site was updated last; empty: that of the newest row.
+  virtual std::span<const double> site_times() const { return {}; }
   virtual StepReport report(bool residual) const = 0;
   /// All that the next steps depend on, to the bit.
   virtual void visit(SavedState&) = 0;

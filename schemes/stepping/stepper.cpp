@@ -16,6 +16,7 @@ namespace delf {
 namespace {
 
 std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan& plan, StepOptions options) {
+  if (options.own_stepper) return options.own_stepper(system);
   options.tolerance = std::max(options.tolerance, smallest_tolerance);
   if (options.steps_vary) {
     if (auto stepper = KickStepper::make(system, plan, options)) return stepper;

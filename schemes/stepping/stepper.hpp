@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -67,6 +68,12 @@ class Stepper {
   /// The residual of the field equations that were solved for the newest row: max |Σ terms| / max Σ |terms| over the
   /// sites (a vacuum has no scale of its own). Costs about a step, and the first of them rows to work in.
   double residual() const { return method_->residual(); }
+  /// The momenta at the newest row, [i·C + c], of a stepper that has them itself; empty: they are halves of equations.
+  std::vector<double> own_momenta() const { return method_->own_momenta(); }
+  /// The time at which each site was updated last; empty: that of the newest row.
+  std::span<const double> site_times() const { return method_->site_times(); }
+  /// The number of updates of cells with steps of their own; 0 where all sites step together.
+  std::int64_t updates() const { return method_->state().updates; }
   /// The number of newest rows that are held: less than two after a step that is not checked, or that failed then.
   int held() const { return method_->state().held; }
   /// The evaluations of the nonlinear part in the last step; 0 if it was solved at once.

@@ -2,6 +2,7 @@
 #include "schemes/system/assembly.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -10,6 +11,7 @@
 
 #include "jets/simd/exact_sum.hpp"
 #include "jets/simd/pack_gather.hpp"
+#include "jets/simd/scratch_rows.hpp"
 #include "lattice/index.hpp"
 
 namespace delf {
@@ -190,9 +192,9 @@ void Assembly::list_stencils(const LatticeSystem& system) {
     b.stencils = static_cast<int>(b.sites.size());
     b.padded = (b.stencils + lanes - 1) / lanes * lanes;
     b.sites.resize(b.padded, b.sites.back());
+    if (b.family->listed()) continue;
     b.x.resize(b.padded / lanes);
-    for (int s = 0; s < b.padded; ++s)  // listed stencils have places of their own
-      b.x[s / lanes].v[s % lanes] = b.family->listed() ? 0 : lattice.position(b.sites[s]);
+    for (int s = 0; s < b.padded; ++s) b.x[s / lanes].v[s % lanes] = lattice.position(b.sites[s]);
   }
 }
 
@@ -201,10 +203,8 @@ void Assembly::list_reads(const LatticeSystem& system) {
   const NodeNumbers unknown_at(parts_.unknowns, parts_.copies, components_);
   const NodeNumbers equation_at(parts_.equations, 1, components_);
   std::vector<std::vector<int>> unknown(batches_.size());
-  int largest = 0;
   for (std::size_t n = 0; n < batches_.size(); ++n) {
     Batch& b = batches_[n];
-    largest = std::max(largest, b.size);
     const std::size_t reads = at(b.size) * at(b.padded);
     b.place.resize(reads), b.side_by_side.resize(reads / at(lanes)), b.equation.resize(reads), unknown[n].resize(reads);
     if (parts_.monodromy != 0) b.gained.resize(reads);
@@ -235,11 +235,6 @@ void Assembly::list_reads(const LatticeSystem& system) {
     }
   }
   list_places(unknown);
-  for (const Batch& b : batches_) {
-    const std::size_t numbers = std::max(b.equations.size() * b.unknowns.size(), at(b.size));
-    out_.reserve(std::max(numbers, at(largest_strip / lanes)));
-  }
-  y_.reserve(largest * most_together / lanes);
   if (components_ == 1) return;
   const auto [low, high] = Columns::rows(batches_, Columns::Of::all);
   int sites = 0;
@@ -247,41 +242,57 @@ void Assembly::list_reads(const LatticeSystem& system) {
   columns_.reserve((high - low + 1) * sites * components_);
 }
 
+int Assembly::strip_length(const Batch& b, std::size_t numbers) {
+  const int fit = largest_strip / static_cast<int>(std::max<std::size_t>(numbers, 1)) / lanes * lanes;
+  return std::min(std::clamp(fit, lanes, most_together), b.padded);
+}
+
 /// The entries of the Jacobian, each once, and which of them each stencil gives a share of.
 void Assembly::list_places(const std::vector<std::vector<int>>& unknown) {
-  struct Share {
-    Place place;
-    int* entry;
+  const auto each_share = [&](const auto& use) {
+    for (std::size_t n = 0; n < batches_.size(); ++n) {
+      Batch& b = batches_[n];
+      b.entry.resize(b.equations.size() * b.unknowns.size() * at(b.padded), -1);
+      int* entry = b.entry.data();
+      for (const int i : b.equations)
+        for (const int m : b.unknowns)
+          for (int s = 0; s < b.padded; ++s, ++entry)
+            if (const int e = b.equation[b.read(i, s)], u = unknown[n][b.read(m, s)]; e < size() && u >= 0)
+              use(e, u, *entry);
+    }
   };
-  std::vector<Share> shares;
-  for (std::size_t n = 0; n < batches_.size(); ++n) {
-    Batch& b = batches_[n];
-    b.entry.assign(b.equations.size() * b.unknowns.size() * at(b.padded), -1);
-    int* entry = b.entry.data();
-    for (const int i : b.equations)
-      for (const int m : b.unknowns)
-        for (int s = 0; s < b.padded; ++s, ++entry) {
-          const Place place{b.equation[b.read(i, s)], unknown[n][b.read(m, s)]};
-          if (place.equation < size() && place.unknown >= 0) shares.push_back({place, entry});
-        }
-  }
-  std::ranges::sort(shares, {}, [](const Share& s) { return std::pair{s.place.equation, s.place.unknown}; });
-  for (const auto& [place, entry] : shares) {
-    if (places_.empty() || places_.back().equation != place.equation || places_.back().unknown != place.unknown)
-      places_.push_back(place);
-    *entry = static_cast<int>(places_.size()) - 1;
+  // By equation: the unknowns of all shares, then each once.
+  std::vector<std::size_t> first(at(size()) + 1, 0);
+  each_share([&](int e, int, int&) { ++first[at(e) + 1]; });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<int> unknowns(first.back());
+  std::vector<std::size_t> end(first.begin(), first.end() - 1);
+  each_share([&](int e, int u, int&) { unknowns[end[at(e)]++] = u; });
+  std::vector<std::size_t> first_place(first.size(), 0);
+  for (int e = 0; e < size(); ++e) {
+    const std::span all(unknowns.data() + first[at(e)], first[at(e) + 1] - first[at(e)]);
+    std::ranges::sort(all);
+    for (std::size_t n = 0; n < all.size(); ++n)
+      if (n == 0 || all[n] != all[n - 1]) places_.push_back({e, all[n]});
+    first_place[at(e) + 1] = places_.size();
   }
   places_.shrink_to_fit();
+  each_share([&](int e, int u, int& entry) {
+    const std::span all(places_.data() + first_place[at(e)], first_place[at(e) + 1] - first_place[at(e)]);
+    entry = static_cast<int>(std::ranges::lower_bound(all, u, {}, &Place::unknown) - all.begin() +
+                             static_cast<std::ptrdiff_t>(first_place[at(e)]));
+  });
   for (Batch& b : batches_) std::ranges::replace(b.entry, -1, static_cast<int>(places_.size()));
 }
 
 void Assembly::take_constant_parts() {
-  fixed_.assign(places_.size() + 1, 0.0);
+  fixed_.clear();
   for (Batch& b : batches_) {
     if (b.family->listed()) continue;  // each stencil has a J of its own
     const auto part = b.family->constant_part(cell(b, 0, b.x[0][0]));
     b.linear = part && part->is_all;
     if (!b.linear) continue;
+    fixed_.resize(places_.size() + 1, 0.0);
     b.at_zero.clear(), b.terms.clear();
     for (std::size_t e = 0; e < b.evaluated.size(); ++e) {
       const int i = b.evaluated[e];
@@ -340,13 +351,13 @@ template <class Use>
 void Assembly::strips(const Batch& b, const Columns& columns, std::int64_t J, int numbers, bool low,
                       const Use& use) const {
   low = low && columns.has_low() && b.family->reads_low();
-  // A strip's numbers stay in the cache of first level.
-  const int most = std::clamp(largest_strip / std::max(numbers, 1) / lanes * lanes, lanes, most_together);
+  alignas(sizeof(Pack)) static constexpr std::array<double, most_together> no_place{};
+  const int most = strip_length(b, at(numbers));
   for (int first = 0; first < b.padded; first += most) {
     const int count = std::min(most, b.padded - first);
     const int values = b.size * count / lanes;
-    y_.resize(low ? 2 * values : values), out_.resize(numbers * count / lanes);
-    Pack *y = y_.data(), *rest = y + values;
+    const ScratchRows room(1, (low ? 2 : 1) * b.size * count), results(1, numbers * count);
+    Pack *const begin = reinterpret_cast<Pack*>(room[0]), *y = begin, *rest = begin + values;
     for (int i = 0; i < b.size; ++i) {
       const int c = b.family->values()[i].component;
       const double* const column = columns(b.rows[i], c);
@@ -363,15 +374,15 @@ void Assembly::strips(const Batch& b, const Columns& columns, std::int64_t J, in
         if (low) ++rest;
       }
     }
-    use(StencilBatch{cell(b, J, 0), count, numbers_of(b.x.data() + first / lanes), numbers_of(y_.data()),
-                     low ? numbers_of(y_.data() + values) : nullptr, b.sites.data() + first},
-        first, out_.data());
+    use(StencilBatch{cell(b, J, 0), count, b.x.empty() ? no_place.data() : numbers_of(b.x.data() + first / lanes),
+                     room[0], low ? numbers_of(begin + values) : nullptr, b.sites.data() + first},
+        first, reinterpret_cast<Pack*>(results[0]), begin);
   }
 }
 
 /// The values of a strip, counted from the first of their column, which keeps its own.
-void Assembly::take_differences(const Batch& b, int packs) const {
-  Pack *const y = y_.data(), *const low = y + b.size * packs;
+void Assembly::take_differences(const Batch& b, int packs, Pack* y) {
+  const Pack* const low = y + b.size * packs;
   for (const std::vector<int>& column : b.family->sums())
     for (int p = 0; p < packs; ++p) {
       const int first = column.front() * packs + p;
@@ -389,14 +400,14 @@ void Assembly::add_residual(const Batch& b, const Columns& columns, std::int64_t
   // J y has lost the digits that differences of y + low have.
   const bool low = columns.has_low() && b.family->reads_low();
   const bool by_matrix = b.linear && steady() && low == b.by_differences;
-  strips(b, columns, J, equations, true, [&](const StencilBatch& strip, int first, Pack* r) {
+  strips(b, columns, J, equations, true, [&](const StencilBatch& strip, int first, Pack* r, Pack* y) {
     const int packs = strip.count / lanes;
     if (by_matrix) {
-      if (low) take_differences(b, packs);
+      if (low) take_differences(b, packs, y);
       for (int e = 0; e < equations; ++e) std::fill_n(r + e * packs, packs, Pack(b.at_zero[e]));
       for (const auto& [e, m, value] : b.terms) {
         if (e >= equations) break;
-        for (int p = 0; p < packs; ++p) r[e * packs + p] += Pack(value) * y_[m * packs + p];
+        for (int p = 0; p < packs; ++p) r[e * packs + p] += Pack(value) * y[m * packs + p];
       }
     } else {
       b.family->residual(strip, evaluated, numbers_of(r));
@@ -464,11 +475,9 @@ void Assembly::residual_and_gain(const std::vector<double>& known, SectionView s
 bool Assembly::keep_low(const LatticeSystem& system) {
   keeps_low_ = true;
   const bool follows = list_gains(system);
-  for (Batch& b : batches_) {
+  for (Batch& b : batches_)
     if (!follows) b.evaluated = b.equations, b.gains.clear();
-    out_.reserve(std::max(b.evaluated.size(), at(b.size)));
-  }
-  y_.reserve(2 * y_.capacity()), columns_.reserve(2 * columns_.capacity());
+  columns_.reserve(2 * columns_.capacity());
   take_constant_parts();
   return follows;
 }
@@ -553,14 +562,14 @@ bool Assembly::list_gains(const LatticeSystem& system) {
 
 void Assembly::jacobian(SectionView section, std::int64_t J, std::vector<double>& values,
                         const std::vector<double>* momenta) const {
-  values = fixed_;
-  if (!steady()) values.assign(fixed_.size(), 0.0);
+  if (fixed_.empty() || !steady()) values.assign(places_.size() + 1, 0.0);
+  else values = fixed_;
   const Columns columns(*this, section, J, Columns::Of::unknown);
   for (const Batch& b : batches_) {
     if ((b.linear && steady()) || below_start(b, J, momenta != nullptr)) continue;
     const int pairs = static_cast<int>(b.equations.size() * b.unknowns.size());
     if (pairs == 0) continue;
-    strips(b, columns, J, pairs, false, [&](const StencilBatch& strip, int first, Pack* derivatives) {
+    strips(b, columns, J, pairs, false, [&](const StencilBatch& strip, int first, Pack* derivatives, Pack*) {
       b.family->jacobian(strip, b.equations, b.unknowns, numbers_of(derivatives));
       for (int n = 0; n < pairs; ++n)
         for (int s = 0; s < strip.count; s += lanes)
@@ -638,7 +647,7 @@ void Assembly::linearised(SectionView y, std::int64_t J, std::span<Variation> V,
     all.resize(b.size);
     std::iota(all.begin(), all.end(), 0);
     const int pairs = static_cast<int>(b.equations.size()) * b.size;
-    strips(b, columns, J, pairs, false, [&](const StencilBatch& strip, int first, Pack* derivatives) {
+    strips(b, columns, J, pairs, false, [&](const StencilBatch& strip, int first, Pack* derivatives, Pack*) {
       b.family->jacobian(strip, b.equations, all, numbers_of(derivatives));
       const int packs = strip.count / lanes;
       const int* entry = b.entry.data() + first;
@@ -675,7 +684,7 @@ void Assembly::each(bool jacobian, SectionView section, std::int64_t J, const Vi
     std::iota(all.begin(), all.end(), 0);
     derivatives.resize(jacobian ? at(b.size * b.size) : at(b.size));
     const int numbers = static_cast<int>(derivatives.size());
-    strips(b, columns, J, numbers, !jacobian, [&](const StencilBatch& strip, int first, Pack* out) {
+    strips(b, columns, J, numbers, !jacobian, [&](const StencilBatch& strip, int first, Pack* out, Pack*) {
       if (jacobian) b.family->jacobian(strip, all, all, numbers_of(out));
       else b.family->residual(strip, all, numbers_of(out));
       for (int s = 0; s < std::min(strip.count, b.stencils - first); ++s) {
@@ -726,7 +735,7 @@ int Assembly::stencils() const {
 
 std::size_t Assembly::bytes() const {
   std::size_t total = places_.size() * sizeof(Place) + fixed_.size() * sizeof(double) +
-                      (y_.capacity() + out_.capacity()) * sizeof(Pack) + columns_.capacity() * sizeof(double) +
+                      columns_.capacity() * sizeof(double) +
                       (parts_.equations.size() + parts_.unknowns.size()) * sizeof(Node);
   for (const Batch& b : batches_)
     total += sizeof(Batch) + b.x.size() * sizeof(Pack) + b.gained.size() * sizeof(double) + b.side_by_side.size() +

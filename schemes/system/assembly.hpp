@@ -204,7 +204,7 @@ class Assembly {
     int row, lowest_row;  ///< of the anchors and of the lowest value, from J
     int stencils, padded;
     std::vector<int> sites = {};  ///< of the anchors, or the numbers of listed stencils
-    Packs x = {};
+    Packs x = {};                 ///< of the anchors; none of listed stencils, which have places of their own
     std::vector<int> rows = {};                      ///< of value i, from J
     std::vector<int> place = {};                     ///< of the site, in the row
     std::vector<char> side_by_side = {};             ///< [read/lanes]: a pack of stencils reads neighbouring places
@@ -242,11 +242,13 @@ class Assembly {
   /// All steps are as long as those that the constant parts were taken with.
   bool steady() const { return own_step_ || times_->uniform(); }
   class Columns;
-  /// Calls use(stencils, number of the first, room for `numbers` of each) for a batch, strip by strip.
+  /// The stencils of a strip that has `numbers` results of each: they stay in the cache of first level.
+  static int strip_length(const Batch&, std::size_t numbers);
+  /// Calls use(stencils, number of the first, room for `numbers` of each, their values) for a batch, strip by strip.
   template <class Use>
   void strips(const Batch&, const Columns&, std::int64_t J, int numbers, bool low, const Use& use) const;
   bool take_matrix_of_differences(Batch&) const;
-  void take_differences(const Batch&, int packs) const;
+  static void take_differences(const Batch&, int packs, Pack* y);
   void add_residual(const Batch&, const Columns&, std::int64_t J, double* E, double* absolute,
                     double* gain = nullptr) const;
   void add_constant(const Batch&, const Numbers& J, Numbers& values) const;
@@ -260,9 +262,8 @@ class Assembly {
   Parts parts_;
   std::vector<Batch> batches_;
   std::vector<Place> places_;
-  Numbers fixed_;            ///< the values of places() that linear batches give
+  Numbers fixed_;            ///< the values of places() that linear batches give; none if there is no such batch
   bool keeps_low_ = false;   ///< sections have low parts
-  mutable Packs y_, out_;    ///< of a strip
   mutable Numbers columns_;  ///< room for Columns
 };
 

@@ -16,7 +16,7 @@ namespace delf {
 DrivenEnds driven_ends(const LatticeSystem& system) {
   DrivenEnds ends;
   for (const auto& family : system.families())
-    if (const auto* end = dynamic_cast<const DrivenEnd*>(family.get()))
+    if (const DrivenEnd* const end = family->driven_end())
       ends.emplace_back(end->is_left() ? 0 : system.lattice().sites() - 1, end);
   return ends;
 }
@@ -37,9 +37,7 @@ void set_driven_ends(const LatticeSystem& system, const DrivenEnds& ends, std::i
 }
 
 bool has_flux(const LatticeSystem& system) {
-  return std::ranges::any_of(system.families(), [](const auto& family) {
-    return dynamic_cast<const LagrangianFamily<WallFlux>*>(family.get()) != nullptr;
-  });
+  return std::ranges::any_of(system.families(), [](const auto& family) { return family->is_flux(); });
 }
 
 namespace {

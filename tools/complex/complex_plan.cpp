@@ -3,12 +3,11 @@
 
 #include <algorithm>
 
-#include "schemes/complex/asynchronous.hpp"
+#include "schemes/methods/mesh_rows.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "tools/complex/complex_commands.hpp"
-#include "tools/complex/mesh_stepping.hpp"
 #include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
 
@@ -71,7 +70,7 @@ void plan_mesh(const ComplexScene& c) {
                field.system().complex().stencils(), field.solver().plan().describe());
     say_memory(field.bytes(), values);
   } else if (c.time == MeshTime::cells) {
-    const std::vector<double> steps = cell_steps(c);
+    const std::vector<double> steps = cell_steps(space.mesh, c.scene.problem.cell_courant);
     const auto [least, largest] = std::ranges::minmax(steps);
     double updates = 0;
     for (const double h : steps) updates += static_cast<double>(c.scene.steps) * c.scene.problem.time_step / h;
@@ -79,7 +78,7 @@ void plan_mesh(const ComplexScene& c) {
         "  steps      each cell by its own, {:.6g} to {:.6g}: {:.6g} updates, and {:.6g} with the least for all\n",
         least, largest, updates, static_cast<double>(c.scene.steps) * static_cast<double>(steps.size()));
     fmt::print("  solve      explicit, in the order of a priority queue\n");
-    say_memory(AsynchronousEvolution(space, steps).bytes(), 2 * values);
+    say_memory(Simulation(c.problem_on_mesh()).bytes(), 2 * values);
   } else {
     const Problem& p = c.scene.problem;
     const Simulation simulation(c.problem_on_mesh());

@@ -86,16 +86,10 @@ ExitCode run(const ComplexScene& c, const fs::path& folder, Resumed resumed) {
   Outcome o;
   o.state = c.state_in_words();
   o.start = StartRule::legendre;
-  std::unique_ptr<MeshStepping> stepping;
+  std::optional<MeshStepping> stepping;
   std::optional<RunFiles::Written> kept;
   try {
-    if (!c.is_one_problem()) stepping = make_mesh_stepping(c, o);
-    if (resumed.state) {
-      (*resumed.state)("written", kept.emplace());
-      stepping->visit(*resumed.state);
-    } else if (stepping) {
-      stepping->start();
-    }
+    if (!c.is_one_problem()) kept = stepping.emplace(c, o).begin(resumed.state.get());
   } catch (const BadInput& bad) {
     throw c.scene.settings.located(bad);
   }

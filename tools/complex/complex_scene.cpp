@@ -341,10 +341,11 @@ void read_steps(ComplexScene& c, const Values& values, const MethodEntry& method
     p.time_step = p.time_steps.front();
   } else {
     settings.keep_one_of("lattice.courant", "lattice.time_step", "give one of them, such as lattice.courant = 0.4");
-    c.courant = values.given("lattice.courant") ? values.real("lattice.courant") : 0;
-    if (c.time == MeshTime::cells && c.courant == 0)
+    const double courant = values.given("lattice.courant") ? values.real("lattice.courant") : 0;
+    if (c.time == MeshTime::cells && courant == 0)
       throw settings.error("lattice.time_step", "cells have steps of their own; give lattice.courant");
-    p.time_step = c.courant > 0 ? c.courant * edge : values.real("lattice.time_step");
+    if (c.time == MeshTime::cells) p.cell_courant = courant;
+    p.time_step = courant > 0 ? courant * edge : values.real("lattice.time_step");
   }
   if (!(p.time_step > 0)) throw settings.error("lattice.time_step", "must be above 0 on a mesh; use a positive one");
   settings.keep_one_of("run.until", "run.steps", "give one of them, such as run.until = 10");

@@ -37,7 +37,6 @@ struct ComplexScene {
   std::filesystem::path mesh_file;              ///< empty: generated
   Tiling tiling;                                ///< of stencils of a file
   MeshTime time = MeshTime::rows;
-  double courant = 0;  ///< of cells: h_K over the shortest edge of the cell
 
   struct Field {
     std::string name;

@@ -11,7 +11,8 @@
 #include "lattice/complex/complex_plan.hpp"
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
-#include "schemes/complex/asynchronous.hpp"
+#include "schemes/complex/asynchronous_window.hpp"
+#include "schemes/methods/mesh_rows.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/mesh_energy.hpp"
@@ -193,17 +194,19 @@ class MeshVerification {
 
   // Windows of some updates a site, with the order that the planner finds for them.
   void look_at_cells() {
-    AsynchronousEvolution evolution(*scene_.space, cell_steps(scene_));
-    evolution.start(scene_.values(), scene_.rates());
+    const Simulation simulation(scene_.problem_on_mesh());
+    AsynchronousStepper stepper(simulation.evolution().system(),
+                                cell_steps(scene_.space->mesh, scene_.scene.problem.cell_courant));
+    stepper.start_rates(scene_.values(), scene_.rates());
     const double until = static_cast<double>(scene_.scene.steps) * scene_.scene.problem.time_step;
     for (int moment = 0; moment < moments_ && !Interrupt::asked(); ++moment) {
-      evolution.advance(until * moment / moments_);
-      evolution.open_window();
-      evolution.update(6 * scene_.space->mesh.cells());
-      const auto made = evolution.window();
-      checks_.look_at(checked(made.system, made.values),
-                      fmt::format("updates {} to {}", evolution.updates() - 6 * scene_.space->mesh.cells() + 1,
-                                  evolution.updates()));
+      const int count = 6 * scene_.space->mesh.cells();
+      stepper.advance(until * moment / moments_);
+      stepper.keep_updates();
+      stepper.update(count);
+      const AsynchronousWindow made(*scene_.space, stepper);
+      const std::int64_t updates = stepper.state().updates;
+      checks_.look_at(checked(made.system, made.values), fmt::format("updates {} to {}", updates - count + 1, updates));
       // Each time of a site is determined by its time before, and by nothing that comes later.
       const Complex& complex = made.system.complex();
       const ComplexPlan plan = make_plan(complex, Touching(complex));

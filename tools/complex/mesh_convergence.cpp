@@ -28,8 +28,8 @@ End end_of(const ComplexScene& c) {
     return {{field.values().begin(), field.values().end()}};
   }
   Outcome unread;
-  const std::unique_ptr<MeshStepping> stepping = make_mesh_stepping(c, unread);
-  const MeshRow last = stepping->last_row();
+  MeshStepping stepping(c, unread);
+  const MeshRow last = stepping.last_row();
   return {{last.values.begin(), last.values.end()}, last.time};
 }
 

@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "lattice/index.hpp"
+#include "schemes/methods/mesh_rows.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/complex/drawn_mesh.hpp"
 #include "tools/complex/mesh_files.hpp"
-#include "tools/complex/mesh_stepping.hpp"
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/files/text_file.hpp"
@@ -162,7 +162,7 @@ std::string updates(const ComplexScene& c, const fs::path& scratch) {
   constexpr double shown_steps = 8;
   constexpr std::int64_t most_lines = 20'000;
   const Mesh& mesh = c.space->mesh;
-  const std::vector<double> steps = cell_steps(c);
+  const std::vector<double> steps = cell_steps(mesh, c.scene.problem.cell_courant);
   const double until = shown_steps * std::ranges::max(steps);
   std::string table;
   std::int64_t lines = 0;

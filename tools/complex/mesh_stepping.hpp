@@ -1,62 +1,70 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <memory>
 #include <optional>
 #include <vector>
 
+#include "schemes/simulation.hpp"
+#include "schemes/system/mesh_energy.hpp"
+#include "schemes/system/mesh_work.hpp"
 #include "tools/complex/mesh_recorder.hpp"
 #include "tools/run/row_loop.hpp"
 
 namespace delf {
 
-/// The rows of a field on a mesh, as its scene wants them: of all sites at once, or of cells that take their own steps between
-/// rows.
-class MeshStepping : public RowLoop {
+class Stepper;
+
+/// The rows of a field on a mesh, as its scene wants them.
+class MeshStepping final : public RowLoop {
  public:
+  /// The scene's time is rows or cells.
+  MeshStepping(const ComplexScene&, Outcome&);
+
   void run(MeshRecorder&, Checkpoints&);
   /// Steps to the end, or until it is interrupted, and records nothing.
   MeshRow last_row();
   /// How it is solved, and what it costs.
-  virtual void describe(Outcome&) const = 0;
-
- protected:
-  MeshStepping(const ComplexScene&, Outcome&);
-
-  const ComplexScene& c_;
+  void describe(Outcome&) const;
 
  private:
   void make_first_rows() override;
-  std::int64_t newest_row() const override = 0;
-  double time(std::int64_t row) const override = 0;
-  void step(bool looked_at) override = 0;
+  std::int64_t newest_row() const override { return simulation_.newest(); }
+  double time(std::int64_t row) const override { return row == 0 ? 0 : simulation_.time(row); }
+  std::optional<double> own_length() const override;
+  void step(bool looked_at) override;
+  int iterations() const override { return simulation_.iterations(); }
   void record(std::int64_t row) override;
   void watch() override;
   void visit_rows(SavedState&) override;
   void finish() override;
 
-  /// The first rows.
-  virtual void begin() = 0;
+  const Stepper& stepper() const;
+  const RowTimes& steps() const;
+  double last_step() const { return steps().step(newest_row() - 1); }
   /// The newest row; or row 0 where that is held still.
-  virtual MeshRow row(std::int64_t) = 0;
-  virtual void visit_fields(SavedState&) = 0;
-  /// Where the field chooses the steps, the shortest of those that the start tells.
-  virtual std::optional<double> first_lengths() const { return {}; }
+  MeshRow row(std::int64_t);
+  void start_rows();
+  void add_work();
+  void check_angles();
   /// Of the given values and rates, where that is not the energy of row 0 by definition; else not a number.
-  virtual double energy_of_start() const { return Outcome::unknown; }
-
+  double energy_of_start() const;
+  double energy_of_row(const std::vector<double>& p, double t);
+  double energy_between();
+  std::vector<double> momenta(int back) const;
+  Balance sum(const LinearSymmetry&, const std::vector<double>& p) const;
+  std::span<const double> multipliers();
   void judge(const MeshRow&) const;
 
+  const ComplexScene& c_;
   Outcome& outcome_;
+  Simulation simulation_;
+  MeshEnergy energy_;
+  std::optional<MeshWork> work_;   ///< of a boundary that does any
+  double work_of_first_step_ = 0;  ///< at its middle
+  std::vector<double> values_, before_, multipliers_;
   MeshRecorder* recorder_ = nullptr;
 };
 
-/// Of a scene whose time is rows or cells.
-std::unique_ptr<MeshStepping> make_mesh_stepping(const ComplexScene&, Outcome&);
-
 /// Rows 0 and 1, from the scene's fields and rates.
 void start(const ComplexScene&, Simulation&);
-
-/// h_K of asynchronous cells: lattice.courant times the shortest edge of each.
-std::vector<double> cell_steps(const ComplexScene&);
 
 }  // namespace delf

@@ -45,6 +45,14 @@ bool is_solution(double residual, double tolerance) {
 RowLoop::RowLoop(const Scene& scene, Outcome& outcome, const WatchedRows& watched)
     : scene_(scene), outcome_(outcome), watched_(watched) {}
 
+std::optional<RunFiles::Written> RowLoop::begin(SavedState* checkpoint) {
+  if (checkpoint == nullptr) return start(), std::nullopt;
+  RunFiles::Written written;
+  (*checkpoint)("written", written);
+  visit(*checkpoint);
+  return written;
+}
+
 void RowLoop::start() {
   try {
     make_first_rows();

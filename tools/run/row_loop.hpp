@@ -22,10 +22,9 @@ class RowLoop {
  public:
   virtual ~RowLoop() = default;
 
-  /// The first rows. Throws BadScene; a numerical failure is what run() ends with.
-  void start();
-  /// Saves or restores all that the rest of the run depends on; what is restored needs no start.
-  void visit(SavedState&);
+  /// The first rows; or those of the run whose checkpoint this is, and how much of its files there was. Throws BadScene; a
+  /// numerical failure is what run() ends with.
+  std::optional<RunFiles::Written> begin(SavedState* checkpoint);
   /// Until the end, an interruption or a failure. Throws NumericalFailure, with the step, after the last good row is
   /// recorded.
   void run(RunFiles&, Checkpoints&);
@@ -39,6 +38,9 @@ class RowLoop {
   std::int64_t recorded() const { return recorded_; }
 
  private:
+  void start();
+  /// Saves or restores all that the rest of the run depends on; what is restored needs no start.
+  void visit(SavedState&);
   virtual void make_first_rows() = 0;
   /// The newest row that solves its equations.
   virtual std::int64_t newest_row() const = 0;

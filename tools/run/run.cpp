@@ -112,10 +112,12 @@ struct Begun {
   Begun(const Begun&) = delete;
   Begun& operator=(const Begun&) = delete;
 
-  void start(const Scene& scene) {
-    stepping->start();
+  std::optional<RunFiles::Written> begin(const Scene& scene, SavedState* checkpoint) {
+    const auto kept = stepping->begin(checkpoint);
+    if (kept) return kept;
     if (simulation.newest() > 0) refuse_tiny_steps(scene, simulation.time(1) - simulation.time(0), "<phi_x^2>");
     outcome.limit = limit_of(scene, simulation);
+    return kept;
   }
   /// Steps, with each part tried after the first failure.
   template <class Attempts>
@@ -135,15 +137,8 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
   Begun begun(scene);
   Outcome& outcome = begun.outcome;
   Stepping& stepping = *begun.stepping;
-  std::optional<RunFiles::Written> kept;
-  if (resumed.state) {
-    (*resumed.state)("written", kept.emplace());
-    stepping.visit(*resumed.state);
-  } else {
-    begun.start(scene);
-  }
-
-  if (!resumed.state) refuse_own_rows(folder, scene);
+  const auto kept = begun.begin(scene, resumed.state.get());
+  if (!kept) refuse_own_rows(folder, scene);
   RunFolder run(folder, resumed, outcome);
   const std::string resolved = resolved_text(scene, outcome.start, outcome.state);
   Recorder recorder(scene, folder, resolved, outcome.winding, begun.names, kept);
@@ -173,10 +168,8 @@ RunInMemory run_in_memory(const Scene& given, const std::string& state, const Se
   Scene scene = given;
   std::optional<StateReader> earlier;
   CheckpointHead head;
-  RunFiles::Written kept;
   if (!state.empty()) {
     head.visit(earlier.emplace(state));
-    (*earlier)("written", kept);
     if (scene.until)
       scene.steps = std::max(scene.steps, head.row + 1);  // their number is a guess where the field chooses
     if (head.row >= scene.steps)
@@ -187,8 +180,7 @@ RunInMemory run_in_memory(const Scene& given, const std::string& state, const Se
   RunInMemory result;
   with_memory_for(scene, [&] {
     Begun begun(scene);
-    if (earlier) begun.stepping->visit(*earlier);
-    else begun.start(scene);
+    const auto kept = begun.begin(scene, earlier ? &*earlier : nullptr).value_or(RunFiles::Written());
     seen.begin(begun.names, kept.series.size);
     FailuresOfRun failures(begun.outcome);
     Recorder recorder(begun.names, seen.record, kept);

@@ -14,6 +14,7 @@
 #include "schemes/theories/angles.hpp"
 #include "schemes/without_value.hpp"
 #include "tools/compare/placed_row.hpp"
+#include "tools/run/moves_walls.hpp"
 #include "tools/run/without_inertia.hpp"
 
 namespace delf {
@@ -80,23 +81,6 @@ void first_step(const Simulation& simulation, const InitialRows& initial, const 
                     "at zero",
                     failed.what(), why));
   }
-}
-
-/// True if ξ(y) = A y + b is not zero at a wall that is fixed, or at an end that is driven, where y is of all times: what the
-/// symmetry conserves is taken up there, or comes from there.
-bool moves_walls(const LinearSymmetry& symmetry, const std::vector<double>& row, const Problem& problem) {
-  const Lattice& lattice = problem.lattice;
-  if (lattice.space() != Space::interval) return false;
-  const std::size_t d = symmetry.shift.size();
-  const auto not_zero = [](double x) { return x != 0; };
-  const auto moves = [&](Wall wall, const char* value, const char* flux, std::size_t first) {
-    if (problem.parameters.has(value) || problem.parameters.has(flux))
-      return std::ranges::any_of(symmetry.shift, not_zero) || std::ranges::any_of(symmetry.matrix, not_zero);
-    for (std::size_t a = 0; wall != Wall::natural && a < d; ++a)
-      if (generator_at(symmetry, a, row.data() + first) != 0) return true;
-    return false;
-  };
-  return moves(lattice.left(), left_end, left_flux, 0) || moves(lattice.right(), right_end, right_flux, row.size() - d);
 }
 
 /// The error of a row against the exact solution, at the row's own sites, which may move.

@@ -4,10 +4,10 @@
 #include <functional>
 
 #include "lattice/error.hpp"
-#include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/families/mesh_families.hpp"
 #include "schemes/methods/mesh_rows.hpp"
+#include "schemes/simulation.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "schemes/theories/wave_map.hpp"
 #include "schemes/verify/fitted_multipliers.hpp"
@@ -228,8 +228,13 @@ TEST_CASE("a constant map into the sphere has the residual 0, though all its ter
 }
 
 TEST_CASE("cells refuse a constraint") {
-  const CellSpace space = sphere_valued(icosahedral_sphere(0), false);
-  CHECK_THROWS_AS(AsynchronousEvolution(space, std::vector<double>(20, 0.1)), BadInput);
+  Problem problem;
+  problem.theory = "wave-map";
+  problem.lattice = Lattice::on(std::make_shared<CellSpace>(sphere_valued(icosahedral_sphere(0), false)));
+  problem.time_step = 0.1;
+  CHECK_NOTHROW(Simulation(problem));
+  problem.cell_courant = 0.1;
+  CHECK_THROWS_WITH(Simulation(problem), Catch::Contains("cells with steps of their own have no constraints"));
 }
 
 }  // namespace

@@ -77,4 +77,13 @@ Balance MeshRows::momentum(const LinearSymmetry& symmetry) const {
   return balance;
 }
 
+Balance MeshCells::momentum(const LinearSymmetry& symmetry, double t) const {
+  const std::vector<double> values = stepper.values(t), momenta = stepper.momenta(t);
+  const std::size_t d = symmetry.shift.size();
+  Balance balance;
+  for (std::size_t n = 0; n < values.size(); ++n)
+    balance.add(momenta[n] * generator_at(symmetry, n % d, values.data() + n - n % d));
+  return balance;
+}
+
 }  // namespace delf::testing

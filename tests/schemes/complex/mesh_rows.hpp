@@ -7,6 +7,7 @@
 
 #include "jets/symmetry.hpp"
 #include "schemes/complex/cell_space.hpp"
+#include "schemes/stepping/asynchronous_stepper.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/system/mesh_energy.hpp"
 
@@ -29,6 +30,7 @@ class MeshRows {
   Balance momentum(const LinearSymmetry&) const;
   double residual() const { return evolution_.stepper().residual(); }
   const Evolution& evolution() const { return evolution_; }
+  const MeshEnergy& energy_of() const { return energy_; }
 
  private:
   const RowTimes& times() const { return *evolution_.system().times(); }
@@ -39,6 +41,21 @@ class MeshRows {
   Evolution evolution_;
   MeshEnergy energy_;
   std::vector<double> row_, before_;
+};
+
+/// Cells with these steps of their own on the same system.
+struct MeshCells {
+  MeshCells(const CellSpace& space, std::vector<double> steps)
+      : rows(space, 0.01), stepper(rows.evolution().system(), std::move(steps)) {}
+
+  double energy(double t) const {
+    const std::vector<double> values = stepper.values(t);
+    return rows.energy_of()(values, rows.energy_of().rates(values, stepper.momenta(t), t), t);
+  }
+  Balance momentum(const LinearSymmetry&, double t) const;
+
+  MeshRows rows;
+  AsynchronousStepper stepper;
 };
 
 }  // namespace delf::testing

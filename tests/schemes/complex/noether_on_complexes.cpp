@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "jets/expressions/expression.hpp"
-#include "schemes/complex/asynchronous.hpp"
+#include "schemes/complex/asynchronous_window.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/verify/noether_check.hpp"
 #include "tests/catch.hpp"
@@ -15,6 +15,7 @@ namespace {
 
 using namespace delf;
 using delf::testing::ComplexForms;
+using delf::testing::MeshCells;
 using delf::testing::MeshRows;
 using delf::testing::SpaceRows;
 
@@ -112,18 +113,18 @@ TEST_CASE("cells with steps of their own keep the momentum of a symmetry, and No
     const CellSpace space(rectangle_mesh(2, 1, 8, 4, false), of_two(potential), false);
     std::vector<double> steps;
     for (int c = 0; c < space.mesh.cells(); ++c) steps.push_back(0.02 + 0.0013 * (c % 7));
-    AsynchronousEvolution evolution(space, steps);
+    MeshCells cells(space, steps);
     const Start start(space.mesh);
-    evolution.start(start.values, start.rates);
-    const Balance first = evolution.momentum(rotation);
+    cells.stepper.start_rates(start.values, start.rates);
+    const Balance first = cells.momentum(rotation, 0);
     most = 0;
     for (int n = 1; n <= 50; ++n) {
-      evolution.advance(0.02 * n);
-      most = std::max(most, std::abs(evolution.momentum(rotation).sum - first.sum) / first.absolute);
+      cells.stepper.advance(0.02 * n);
+      most = std::max(most, std::abs(cells.momentum(rotation, 0.02 * n).sum - first.sum) / first.absolute);
     }
-    evolution.open_window();
-    evolution.update(6 * space.mesh.cells());
-    const auto window = evolution.window();
+    cells.stepper.keep_updates();
+    cells.stepper.update(6 * space.mesh.cells());
+    const AsynchronousWindow window(space, cells.stepper);
     return checks_on(window.system, window.values, true);
   };
   double most = 0;

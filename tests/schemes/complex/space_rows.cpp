@@ -8,7 +8,6 @@
 #include "jets/batch_of.hpp"
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
-#include "schemes/complex/asynchronous.hpp"
 #include "schemes/complex/cell_space.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "schemes/simulation.hpp"
@@ -309,11 +308,11 @@ TEST_CASE("cells with steps of their own read t and x when they act: of order 2 
       const auto cell = space.mesh.cell(c);
       steps.push_back(courant * std::abs(space.mesh.points[cell[1]][0] - space.mesh.points[cell[0]][0]));
     }
-    AsynchronousEvolution evolution(space, steps);
+    MeshCells cells(space, steps);
     const std::vector<double> start = at_points(space.mesh, manufactured_solution, 0);
-    evolution.start(start, std::vector<double>(start.size(), 0.0));
-    evolution.advance(1);
-    return evolution.values(1);
+    cells.stepper.start_rates(start, std::vector<double>(start.size(), 0.0));
+    cells.stepper.advance(1);
+    return cells.stepper.values(1);
   };
   const std::vector<double> limit = values(0.4 / 64), exact = at_points(space.mesh, manufactured_solution, 1);
   const auto distance = [&](const std::vector<double>& now) {

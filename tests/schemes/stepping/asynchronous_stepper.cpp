@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "schemes/complex/asynchronous.hpp"
+#include "schemes/stepping/asynchronous_stepper.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "jets/expressions/expression.hpp"
+#include "schemes/complex/asynchronous_window.hpp"
 #include "schemes/complex/complex_solver.hpp"
 #include "tests/catch.hpp"
 #include "tests/schemes/complex/complex_forms.hpp"
@@ -32,12 +33,12 @@ struct Case {
 
 TEST_CASE("asynchronous steps are a complex with the same order, and the form formula holds on it") {
   const Case c(0.4);
-  AsynchronousEvolution evolution(c.space, c.steps);
-  evolution.start(c.values, c.rates);
-  evolution.advance(1);
-  evolution.open_window();
-  evolution.update(400);
-  const auto window = evolution.window();
+  MeshCells cells(c.space, c.steps);
+  cells.stepper.start_rates(c.values, c.rates);
+  cells.stepper.advance(1);
+  cells.stepper.keep_updates();
+  cells.stepper.update(400);
+  const AsynchronousWindow window(c.space, cells.stepper);
   const ComplexSolver solver(window.system);
   CHECK(solver.plan().largest == 1);
   CHECK(solver.is_direct());
@@ -69,14 +70,14 @@ TEST_CASE("asynchronous steps converge with order 2 on a mesh, and their energy 
   while (reference.newest() < 4000) reference.step();
   const auto error = [&](double courant) {
     const Case c(courant);
-    AsynchronousEvolution evolution(c.space, c.steps);
-    evolution.start(c.values, c.rates);
-    const double energy = evolution.energy(0);
+    MeshCells cells(c.space, c.steps);
+    cells.stepper.start_rates(c.values, c.rates);
+    const double energy = cells.energy(0);
     for (double t = 1; t <= 4; ++t) {
-      evolution.advance(t);
-      CHECK(std::abs(evolution.energy(t) - energy) < 0.05 * courant * courant * energy);
+      cells.stepper.advance(t);
+      CHECK(std::abs(cells.energy(t) - energy) < 0.05 * courant * courant * energy);
     }
-    const auto values = evolution.values(4);
+    const auto values = cells.stepper.values(4);
     double most = 0;
     for (std::size_t i = 0; i < values.size(); ++i) most = std::max(most, std::abs(values[i] - reference.row()[i]));
     return most;
@@ -87,13 +88,13 @@ TEST_CASE("asynchronous steps converge with order 2 on a mesh, and their energy 
 TEST_CASE("asynchronous steps of one length are leapfrog rows") {
   const Case c(0.4);
   const double h = 0.05;
-  AsynchronousEvolution evolution(c.space, std::vector<double>(c.steps.size(), h));
-  evolution.start(c.values, c.rates);
+  MeshCells cells(c.space, std::vector<double>(c.steps.size(), h));
+  cells.stepper.start_rates(c.values, c.rates);
   MeshRows rows(c.space, h);
   rows.start(c.values, c.rates);
   while (rows.newest() < 40) rows.step();
-  evolution.advance(40 * h);
-  const auto values = evolution.values(40 * h);
+  cells.stepper.advance(40 * h);
+  const auto values = cells.stepper.values(40 * h);
   for (std::size_t i = 0; i < values.size(); ++i) CHECK(std::abs(values[i] - rows.row()[i]) < 1e-12);
 }
 
