@@ -45,7 +45,7 @@ RowMonitors::RowMonitors(const Problem& problem, const FieldTheory& theory,
       has_constraints_(std::ranges::count(system_.all_components(), Role::multiplier, &Component::role) > 0),
       field_lag_(has_constraints_ ? slab_extent(system_, evolution.plan()).field_lag : 0),
       monodromy_(monodromy_of(problem)) {
-  if (method_.energy) energy_ = method_.energy->make(theory, system_, problem);
+  if (const EnergyEntry& entry = energy_of_run(problem); entry.make) energy_ = entry.make(theory, system_, problem);
   if (!energy_ && system_.fields() != theory.components())
     throw std::logic_error("scheme.method = " + method_.name + ": has other fields than the theory, and no energy");
   for (const LinearSymmetry& s : symmetries)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lattice/index.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/methods/element_parts.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -62,7 +63,10 @@ const std::vector<const EnergyEntry*>& energy_entries() {
 }
 
 const EnergyEntry& energy_of_run(const Problem& problem) {
-  if (const EnergyEntry* own = find_method(problem.method).energy) return *own;
+  const MethodEntry& method = find_method(problem.method);
+  if (method.energy) return *method.energy;
+  // The work of driven ends on sub-steps is known up to a row.
+  if (method.own_energy == &composition_energy && !key_of_driven_end(problem).empty()) return *method.own_energy;
   return problem.lattice.space() == Space::point ? midway_energy : rectangle_energy;
 }
 

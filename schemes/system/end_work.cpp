@@ -52,8 +52,8 @@ std::shared_ptr<const StencilFamily> tested_by_itself(const DensityOnTable& jets
 }  // namespace
 
 EndWork::EndWork(const LatticeSystem& system, const std::shared_ptr<const BatchDensity>& density,
-                 std::vector<EndFlux> fluxes, WorkUntil until)
-    : system_(system), fluxes_(std::move(fluxes)), until_(until), ends_(driven_ends(system)) {
+                 std::vector<EndFlux> fluxes)
+    : system_(system), fluxes_(std::move(fluxes)), ends_(driven_ends(system)) {
   std::shared_ptr<const StencilFamily> observed;
   for (const auto& family : system.families())
     if (const DensityOnTable* jets = family->made_of(); jets && !jets->table.lower_side.empty() && !element_) {
@@ -121,7 +121,7 @@ double EndWork::flowed_in(const Window& rows) const {
 void EndWork::add_step(const Window& rows) {
   const std::int64_t newest = rows.last_row(), row = newest - 1;
   const RowTimes& times = *system_.times();
-  const double before = until_row_, last = at_row_;
+  const double last = at_row_;
   if (below_) {
     const Window with_low = with_low_parts(rows);
     std::vector<double> p = (*below_)(with_low, newest);
@@ -139,7 +139,7 @@ void EndWork::add_step(const Window& rows) {
     begun_ = 1;
     return;
   }
-  until_row_ += at_row_ - last + flowed_in(rows);
+  sum_ += at_row_ - last + flowed_in(rows);
   if (walls_) {
     std::vector<double> E;
     walls_->residual(SectionRing(rows, row - system_.height(), row + system_.height()), row, E);
@@ -147,10 +147,9 @@ void EndWork::add_step(const Window& rows) {
       const auto& [site, c] = walls_->equation(n);
       const auto end = std::ranges::find(ends_, site.space, &DrivenEnds::value_type::first);
       const Component& component = system_.component(c);
-      until_row_ -= E[at(n)] * end->second->rate(component.field, times.time(row), times.step(row), component.at.time);
+      sum_ -= E[at(n)] * end->second->rate(component.field, times.time(row), times.step(row), component.at.time);
     }
   }
-  sum_ = until_ == WorkUntil::newest_row ? until_row_ : 0.5 * (before + until_row_);
 }
 
 }  // namespace delf

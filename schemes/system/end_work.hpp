@@ -31,9 +31,6 @@ struct EndFlux {
   FormulasOfTime flux;
 };
 
-/// The time until which EndWork counts: that of an energy.
-enum class WorkUntil { midway, newest_row };
-
 /// The work that the ends of an interval do on the field. Without elements in time it is summed from row to row,
 ///
 ///     W += F_j (y_{j+1} − y_{j−1})/2,    F_j = −E_j/h at a driven wall,    F_j = f(t_j) of a flux,
@@ -45,26 +42,25 @@ enum class WorkUntil { midway, newest_row };
 ///
 ///     W = −Σ E ḟ(t of the node) + (p − ∂S/∂y of what lies below) ḟ, in row n less in the first row,    W = h Σ_q w_q f φ_t,
 ///
-/// with p of the Legendre transform of the row: kept to the order of the method. Where a method has tests of its own, E is
-/// tested by the functions of the field.
+/// with p of the Legendre transform of the row: kept to the order of the method, and to order 2 at a driven wall of sub-steps,
+/// between which it moves along straight lines. Where a method has tests of its own, E is tested by the functions of the field.
 class EndWork {
  public:
   /// The density is that of the theory, and of its energy.
-  EndWork(const LatticeSystem&, const std::shared_ptr<const BatchDensity>&, std::vector<EndFlux>,
-          WorkUntil = WorkUntil::midway);
+  EndWork(const LatticeSystem&, const std::shared_ptr<const BatchDensity>&, std::vector<EndFlux>);
 
   /// The work is one of elements: add() is called for the rows of the start too, before the first step.
   bool by_elements() const { return element_.has_value(); }
   /// Rows n − 2, n − 1 and n; of elements as many of them as there are.
   void add(const Window&);
+  /// Up to the middle of rows n − 1 and n; of elements up to row n.
   double sum() const { return sum_; }
 
   /// SavedState, of a room above this one.
   template <class State>
   void visit(State& state) {
     state("work of the ends", sum_);
-    if (element_)
-      state("work until the newest row", until_row_), state("work at the newest row", at_row_), state("begun", begun_);
+    if (element_) state("work at the newest row", at_row_), state("begun", begun_);
   }
 
  private:
@@ -76,14 +72,12 @@ class EndWork {
   /// densities with second derivatives and of other elements.
   std::optional<LatticeSystem> observed_;
   std::vector<EndFlux> fluxes_;
-  WorkUntil until_;
   DrivenEnds ends_;
   std::unique_ptr<const Assembly> walls_;  ///< the equations that driven walls would have; null: none is driven
   std::unique_ptr<const HalfEquations> below_, below_walls_;  ///< of elements; the second null: that of the first
   std::optional<StencilTable> element_;                       ///< in time, on the site of a wall
   double sum_ = 0;
-  double until_row_ = 0;  ///< W up to the newest row
-  double at_row_ = 0;     ///< what it has there of the last row alone
+  double at_row_ = 0;  ///< what the sum has of the newest row alone
   int begun_ = 0;
 };
 

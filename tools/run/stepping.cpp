@@ -144,10 +144,8 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
     outcome.conserved.push_back(
         {names.further.back() + ", " + own->entry->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   if (names.further.size() > 0 && names.further.back() == energy_less_work) {
-    // an energy of the method's own is that of a row
     work_.emplace(simulation.evolution().system(), simulation.theory().shared_density(),
-                  end_fluxes(simulation.theory(), scene.problem),
-                  find_method(scene.problem.method).energy ? WorkUntil::newest_row : WorkUntil::midway);
+                  end_fluxes(simulation.theory(), scene.problem));
     density_work_.emplace(simulation, scene.problem.lattice, initial.monodromy());
     outcome.conserved.push_back({energy_less_work, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   }
