@@ -42,7 +42,7 @@ class MeshStepping final : public RowLoop {
   /// The newest row; or row 0 where that is held still.
   MeshRow row(std::int64_t);
   void check_angles();
-  /// Of the given values and rates, where that is not the energy of row 0 by definition; else not a number.
+  /// The energy of the given values and rates, where that is not the energy of row 0 by definition; else not a number.
   double energy_of_start() const;
   double energy_between();
   std::vector<double> momenta(int back) const;
