@@ -10,7 +10,7 @@ namespace delf {
 /// The updates of cells with steps of their own, and the values of the sites at theirs, as a complex. Each site's first two
 /// times are data.
 struct AsynchronousWindow {
-  /// Those that the stepper has kept.
+  /// The updates that the stepper has kept.
   AsynchronousWindow(const CellSpace&, const AsynchronousStepper&);
 
   ComplexSystem system;

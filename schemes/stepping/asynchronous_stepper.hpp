@@ -62,7 +62,7 @@ class AsynchronousStepper final : public StepMethod {
     double time;
     std::vector<double> values;
   };
-  /// From now on updates are kept, and the values of each site at its own.
+  /// Updates are kept from now on, and the values of each site at its own.
   void keep_updates();
   const std::vector<Update>& kept_updates() const { return kept_; }
   const std::vector<std::vector<SiteEvent>>& kept_events() const { return events_; }

@@ -261,7 +261,7 @@ void Assembly::list_places(const std::vector<std::vector<int>>& unknown) {
               use(e, u, *entry);
     }
   };
-  // By equation: the unknowns of all shares, then each once.
+  // The unknowns of all shares, equation by equation; then each once.
   std::vector<std::size_t> first(at(size()) + 1, 0);
   each_share([&](int e, int, int&) { ++first[at(e) + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());

@@ -72,7 +72,7 @@ void MeshStepping::describe(Outcome& o) const {
         fmt::format("waves on this mesh grow at h = {:.4g} by linear theory; take h below {:.4g}", p.time_step, *most));
 }
 
-/// What the run is measured by is of row 0, recorded or not.
+/// The run is measured by row 0, recorded or not.
 void MeshStepping::make_first_rows() {
   start_rows();
   if (c_.step_control())
@@ -160,14 +160,14 @@ double MeshStepping::energy_of_row(const std::vector<double>& p, double t) {
   return energy_(values_, rates, t);
 }
 
-/// Of the last two rows, whichever of them is asked for.
+/// The energy of the last two rows, whichever of them is asked for.
 double MeshStepping::energy_between() {
   std::vector<double> newest(values_.size());
   simulation_.copy_row(0, newest), simulation_.copy_row(1, before_);
   return energy_.between(before_, newest, last_step(), time(newest_row()));
 }
 
-/// Of the fields at the newest row, or the one before it, [i·d + a]: the half of their equations.
+/// The momenta of the fields at the newest row, or the one before it, [i·d + a]: the half of their equations.
 std::vector<double> MeshStepping::momenta(int back) const {
   const std::vector<double> all = half_equations(simulation_.evolution().system(), stepper().window(2),
                                                  stepper().newest() - back, back == 0 ? Side::below : Side::above);

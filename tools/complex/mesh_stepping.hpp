@@ -45,7 +45,7 @@ class MeshStepping final : public RowLoop {
   void start_rows();
   void add_work();
   void check_angles();
-  /// Of the given values and rates, where that is not the energy of row 0 by definition; else not a number.
+  /// The energy of the given values and rates, where that is not the energy of row 0 by definition; else not a number.
   double energy_of_start() const;
   double energy_of_row(const std::vector<double>& p, double t);
   double energy_between();
