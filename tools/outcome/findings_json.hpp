@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/report/machine.hpp"
 #include "tools/scene/scene.hpp"
 
 namespace delf {
@@ -15,8 +16,12 @@ using Json = nlohmann::ordered_json;
 
 inline Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
-/// The head: which version found it, of which scene.
-inline Json json_head(const Scene& scene) { return {{"version", DELF_VERSION}, {"scene", scene.name}}; }
+/// The head: which version found it, on which machine, of which scene.
+inline Json json_head(const std::string& scene) {
+  return {
+      {"version", DELF_VERSION}, {"scene", scene}, {"machine", machine_in_words()}, {"compiler", compiler_in_words()}};
+}
+inline Json json_head(const Scene& scene) { return json_head(scene.name); }
 
 /// The array of what `json_of` makes of each element.
 template <class Element, class JsonOf>

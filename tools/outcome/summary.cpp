@@ -5,15 +5,12 @@
 #include "schemes/monodromy.hpp"
 #include "tools/outcome/findings_json.hpp"
 #include "tools/outcome/outcome.hpp"
-#include "tools/report/machine.hpp"
 
 namespace delf {
 
 std::string summary_json(const Subject& subject, const Scene& scene, const Outcome& o) {
   const Problem& p = scene.problem;
   Json json = json_head(scene);
-  json["machine"] = machine_in_words();
-  json["compiler"] = compiler_in_words();
   json["status"] = o.status;
   json["failure"] = text_or_null(o.failure);
   const bool broken = !std::isnan(o.break_time);

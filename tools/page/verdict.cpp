@@ -22,22 +22,23 @@ std::string failure_in_words(const std::string& status) {
 
 PageVerdict of_run(const Json* summary) {
   const std::string status = text_in(summary, "status");
-  const std::string until = fmt::format("{} steps, to t = {}", number_text(number_in(summary, "steps")),
-                                        number_text(number_in(summary, "time")));
+  std::string until;  // of a problem without time nothing
+  if (const auto time = number_in(summary, "time"); time && number_in(summary, "steps").value_or(0) > 0)
+    until = fmt::format(" after {} steps, at t = {}", number_text(number_in(summary, "steps")), number_text(time));
   PageVerdict verdict{false, {}, texts_in(summary, "warnings")};
   if (status == "interrupted")
-    verdict.sentence = fmt::format("The run was interrupted after {}. `delf resume` goes on with it.", until);
+    verdict.sentence = fmt::format("The run was interrupted{}. `delf resume` goes on with it.", until);
   else if (status != "done") {
-    verdict.sentence = fmt::format("The run failed: {}. Its rows are good up to the last one recorded, after {}.",
-                                   failure_in_words(status), until);
+    verdict.sentence = fmt::format("The run failed{}: {}. Its rows are good up to the last one recorded.", until,
+                                   failure_in_words(status));
     if (const std::string why = text_in(summary, "failure"); !why.empty())
       verdict.points.insert(verdict.points.begin(), why);
   } else if (verdict.points.empty()) {
     verdict.good = true;
-    verdict.sentence = fmt::format("The run ended well, after {}, without a warning.", until);
+    verdict.sentence = fmt::format("The run ended well{}, without a warning.", until);
   } else
     verdict.sentence = fmt::format(
-        "The run ended, after {}, but its result may be wrong: there {}.", until,
+        "The run ended{}, but its result may be wrong: there {}.", until,
         verdict.points.size() == 1 ? "is a warning" : fmt::format("are {} warnings", verdict.points.size()));
   return verdict;
 }

@@ -81,9 +81,7 @@ std::string sweep_csv(const SweepRequest& request, const SweepOutcome& outcome) 
 }
 
 std::string sweep_json(const SweepRequest& request, const SweepOutcome& outcome) {
-  Json json;
-  json["version"] = DELF_VERSION;
-  json["scene"] = outcome.scene;
+  Json json = json_head(outcome.scene);
   json["status"] = outcome.status;
   json["keys"] = request.keys;
   json["number"] = text_or_null(outcome.number);
