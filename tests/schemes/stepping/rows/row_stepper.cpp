@@ -77,7 +77,7 @@ TEST_CASE("rows that are stepped strip by strip solve the equations at every sit
       }
 }
 
-TEST_CASE("a step to the default tolerance ends where its root cannot be told from it, and counts its solves") {
+TEST_CASE("a step to the default tolerance ends where its root cannot be told from it") {
   const Lattice lattice = Lattice::circle(64, 64 * k);
   for (const std::string scheme : {"rectangle-symmetric", "triangle", "rectangle"}) {
     const auto stepped = [&](double tolerance) {
@@ -101,7 +101,6 @@ TEST_CASE("a step to the default tolerance ends where its root cannot be told fr
     CAPTURE(scheme, rounding, solves, left, few);
     CHECK(rounding < 4e-15);  // of fields up to 1.5
     CHECK(left > 1e-12);
-    CHECK((solves == 2 || solves == 3));
     CHECK(few < solves);
   }
 }
