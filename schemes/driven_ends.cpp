@@ -35,9 +35,10 @@ FormulasOfTime formulas_of(const FieldTheory& theory, const Problem& p, const st
   for (const std::string& part : parts_of(text, ';'))
     formulas.push_back({key, text, std::make_shared<const Formula>(part, numbers, key)});
   if (static_cast<int>(formulas.size()) != theory.components())
-    throw BadInput(key, fmt::format("{} = {}: gives {}, and there are {} fields; give a formula for each, separated by "
-                                    "semicolons",
-                                    key, text, formulas.size(), theory.components()));
+    throw BadInput(key,
+                   fmt::format("{} = {}: the number of its formulas is {}, and that of the fields {}; give one for "
+                               "each, separated by semicolons",
+                               key, text, formulas.size(), theory.components()));
   return formulas;
 }
 

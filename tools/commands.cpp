@@ -19,6 +19,7 @@
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/page/page.hpp"
+#include "tools/page/result_folder.hpp"
 #include "tools/plan.hpp"
 #include "tools/resume.hpp"
 #include "tools/rows/initial_rows.hpp"
@@ -109,13 +110,23 @@ std::string scene_for_page(const SomeScene& scene) try {
   });
 }
 
+/// The scene.ini of a folder stays, where a run wrote it with its rows, or somebody by hand.
+bool is_kept(const std::filesystem::path& folder) {
+  std::error_code none;
+  const std::filesystem::path file = folder / "scene.ini";
+  if (!std::filesystem::exists(file, none)) return false;
+  for (const char* of_run : {"summary.json", "series.csv", "fields.h5"})
+    if (std::filesystem::exists(folder / of_run, none)) return true;
+  return !file_text(file).starts_with(resolved_scene_begins);
+}
+
 /// Carries out `work`, and makes the page of its results, where the scene asks for it; of a run that fails, too.
 ExitCode with_page(bool wanted, const std::filesystem::path& folder, const std::function<ExitCode()>& work,
                    const std::function<std::string()>& scene) {
   if (!wanted) return work();
   const auto make_page = [&] {
     try {
-      if (!std::filesystem::exists(folder / "scene.ini") && scene) write_text_file(folder / "scene.ini", scene());
+      if (scene && !is_kept(folder)) write_text_file(folder / "scene.ini", scene());
       write_page({folder}, std::nullopt);
     } catch (const std::exception& error) {
       std::fputs(fmt::format("delf: no page: {}\n", error.what()).c_str(), stderr);

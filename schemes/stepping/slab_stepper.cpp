@@ -217,6 +217,9 @@ void SlabStepper::start_centred(const std::vector<double>& row0, const std::vect
       throw BadInput("initial.start",
                      "initial.start = centred: not with a constraint; use scheme.method = cgvi with scheme.tableau = "
                      "stormer-verlet, which starts from rates, or give a solution as exact.FIELD");
+    if (c.role == Role::multiplier)
+      throw BadInput("initial.start",
+                     "initial.start = centred: not with a constraint on a lattice; give a solution as exact.FIELD");
     if (c.role != Role::field || starting_rows_ != 2) return StepMethod::start_centred(row0, velocity);
   }
   std::vector<double> driven = row0;

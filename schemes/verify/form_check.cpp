@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
@@ -19,6 +21,14 @@ std::string slaved_names(const LatticeSystem& system) {
     if (c.role == Role::slaved && (c.position || names.empty()))
       names = c.position ? c.name : "slaved values";  // nodes inside a step go with the position
   return names;
+}
+
+/// Two numbers with as many digits as they need to differ, six or more.
+std::pair<std::string, std::string> told_apart(double a, double b) {
+  for (int digits = 6;; ++digits) {
+    auto texts = std::pair(fmt::format("{:.{}g}", a, digits), fmt::format("{:.{}g}", b, digits));
+    if (texts.first != texts.second || digits == 17) return texts;
+  }
 }
 
 }  // namespace
@@ -184,14 +194,16 @@ std::string FormCheck::why(const RegionSystem& system, const RegionSystem::Value
         "variation was changed there or at a site next to it, or it was evolved by other equations.",
         variation == &pair.V ? "V" : "W", in_words(system_, node, system.origin()), worst->relative());
   }
-  if (const auto pair_of_nodes = system.least_mutual(y))
+  if (const auto pair_of_nodes = system.least_mutual(y)) {
+    const auto [by_a, by_b] = told_apart(pair_of_nodes->b_by_a, pair_of_nodes->a_by_b);
     return fmt::format(
-        "The equations are not those of an action: the equation at {} feels the value at {} with {:.6g}, and the other "
-        "way round it is {:.6g}. {}",
+        "The equations are not those of an action: the equation at {} feels the value at {} with {}, and the other "
+        "way round it is {}. {}",
         in_words(system_, pair_of_nodes->b, system.origin()), in_words(system_, pair_of_nodes->a, system.origin()),
-        pair_of_nodes->b_by_a, pair_of_nodes->a_by_b,
+        by_a, by_b,
         variational_ ? "The scheme is said to be variational: look at the derivatives of its Lagrangian."
                      : "The scheme comes from no Lagrangian, and nothing multisymplectic is conserved.");
+  }
   return "The linearised equations hold and are those of an action on int U, and still the terms at the boundary do "
          "not "
          "cancel: a stencil that touches the boundary has a residual that is the gradient of no Lagrangian.";

@@ -123,6 +123,16 @@ std::vector<double> RegionSystem::sizes(const Values& y) const {
   return size;
 }
 
+std::vector<double> RegionSystem::sizes_of_stencils(const Values& y) const {
+  std::vector<double> size(nodes(), 0.0);
+  each_jacobian(y, false, [&](const Assembly::Local& at, Reads read, std::span<const double> J) {
+    double sum = 0;
+    for (std::size_t n = 0; n < J.size(); ++n) sum += std::abs(J[n] * at.y[n % read.size()]);
+    for (const int node : read) size[node] += sum;
+  });
+  return size;
+}
+
 std::vector<Balance> RegionSystem::linearised(const Values& y, const Values& V) const {
   Assembly::Variation variation{row(V)};
   std::vector<double> values;

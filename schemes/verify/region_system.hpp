@@ -58,6 +58,9 @@ class RegionSystem {
   std::vector<Balance> residual(const Values& y) const;
   /// Σ_a |∂E_b/∂y_a y_a| at every node b of U: what the terms of E_b have cancelled within stencils too.
   std::vector<double> sizes(const Values& y) const;
+  /// Σ_ba |∂E_b/∂y_a y_a| of the stencils that have a node, at every node of U: its equation is rounded like their terms, even
+  /// where these cancel within a stencil.
+  std::vector<double> sizes_of_stencils(const Values& y) const;
 
   /// Random solutions of the linearised equations at equations(), by an orthogonal projection onto the null space of
   /// ∂E_b/∂y_a, and zero at fixed walls, unless these are data of the region: no evolution is needed to have them.

@@ -40,8 +40,8 @@ TEST_CASE("a run that ends at half of its steps and goes on is the whole run, to
 
 TEST_CASE("a run that is killed at random instants and resumed is the whole run, to the bit") {
   const Folder folder;
-  const Ran ran = shell(folder, python(folder) + " " + script +
-                                    " '" + program_path() + "' --kills 2 --scenes kink --arguments=--output.figures=off");
+  const Ran ran = shell(folder, python(folder) + " " + script + " '" + program_path() +
+                                    "' --kills 2 --scenes kink --arguments=--output.figures=off");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 0);
 }
@@ -169,4 +169,25 @@ TEST_CASE("a run that goes further warns as one without a break") {
   CHECK(contains(warnings("jump.ini", 23, 60), "jump grows from"));
   CHECK(contains(warnings("kink --initial.speed=0.1 --lattice.sites=21 --lattice.stencil=triangle-vertex", 140, 168),
                  "pinned by the lattice"));
+}
+
+TEST_CASE("a run that goes further has the sums of one without a break, and says which of them the walls take") {
+  const Folder folder;
+  folder.write("wave.ini",
+               "[theory]\nname = wave\n[lattice]\nspace = interval\nlength = 1\nsites = 17\ncourant = 0.5\n"
+               "[initial]\nphi = 0\nphi_t = sin(pi*x)\n");
+  folder.write("mesh.ini",
+               "[theory]\nname = wave\n[lattice]\nspace = complex\nmesh = rectangle:2,1,8,4\ncourant = 0.3\n"
+               "[initial]\nphi = sin(pi*x/4)*sin(pi*y/2)\nphi_t = 0\n");
+  for (const std::string scene : {"wave.ini", "mesh.ini"}) {
+    const std::string run = "run " + scene + " --output.every=1 --output.figures=off --out ";
+    REQUIRE(delf_program(folder, run + "whole --run.steps=20").code == 0);
+    REQUIRE(delf_program(folder, run + "out --run.steps=10").code == 0);
+    REQUIRE(resume(folder, "--run.steps=20").code == 0);
+    const auto sums = [&](const char* results) {
+      return nlohmann::json::parse(read(folder / (std::string(results) + "/summary.json")))["conserved"];
+    };
+    CHECK(sums("whole")[0]["at_walls"] == true);
+    CHECK(sums("out") == sums("whole"));
+  }
 }

@@ -173,10 +173,7 @@ void require_constraint(const ComplexScene& c) {
   const std::string& name = c.fields.front().name;
   c.space->each_constraint(values, [&](std::size_t i, double G, std::span<const double> slopes) {
     if (c.time == MeshTime::none && !c.space->fixed[i]) return;
-    double terms = 0;  // Σ |∂G/∂φ φ|
-    for (std::size_t a = 0; a < slopes.size(); ++a) terms += std::abs(slopes[a] * values[i * slopes.size() + a]);
-    constexpr double rounding = 1e-12;
-    if (!(std::abs(G) <= rounding * std::max(1.0, terms)))
+    if (!keeps_constraint(G, slopes, std::span(values).subspan(i * slopes.size(), slopes.size())))
       throw c.scene.settings.error(
           (c.fields.front().exact ? "exact." : "initial.") + name,
           fmt::format("breaks the constraint at point {} of the mesh, where it is {:.3g} and not 0; give fields that "
@@ -314,6 +311,7 @@ double read_space(ComplexScene& c, const Values& values, int halvings) {
   const auto space = std::make_shared<CellSpace>(joined(apart, boundary.joined_parts()), c.theory->shared_density(),
                                                  fixed, c.theory->constraint());
   boundary.put_on(*space);
+  boundary.require_constraint(settings, *space);
   c.space = space;
   refuse_seam(c);
   p.lattice = Lattice::on(c.space);
@@ -362,6 +360,7 @@ void read_steps(ComplexScene& c, const Values& values, const MethodEntry& method
     else
       for (double t = 0; t < until * (1 - 1e-12); t += p.time_steps[at(scene.steps - 1) % p.time_steps.size()])
         ++scene.steps;
+    require_a_step(settings, values, scene.steps, p.time_step);
   }
   p.time_step = std::ldexp(p.time_step, -halvings);
   scene.steps <<= halvings;

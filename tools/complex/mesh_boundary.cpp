@@ -14,6 +14,7 @@
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
 #include "lattice/text_parts.hpp"
+#include "schemes/complex/cell_space.hpp"
 #include "tools/scene/keys.hpp"
 
 namespace delf {
@@ -59,9 +60,10 @@ struct MeshBoundary::Data {
       rates.push_back(values.back().by(0));
     }
     if (values.size() != fields.size())
-      throw settings.error(key, fmt::format("gives {}, and the fields are {}; give a formula for each, separated by "
-                                            "semicolons",
-                                            values.size(), fmt::join(fields, ", ")));
+      throw settings.error(key,
+                           fmt::format("gives {} formula{}, and the fields are {}; give one for each, separated by "
+                                       "semicolons",
+                                       values.size(), values.size() == 1 ? "" : "s", fmt::join(fields, ", ")));
   }
   bool reads_time() const {
     return std::ranges::any_of(values, [](const PlaceFormula& f) { return f.reads_time(); });
@@ -114,9 +116,13 @@ MeshBoundary::MeshBoundary(const Settings& settings, const Mesh& mesh, bool othe
       std::vector<std::string> names;
       for (const Mesh::Part& one : mesh.parts) names.push_back(one.name);
       throw settings.error(
-          s.key, mesh.parts.empty()
-                     ? "the boundary of this mesh has no named parts; use boundary.mesh"
-                     : fmt::format("the mesh has no part of this name; its parts are {}", fmt::join(names, ", ")));
+          s.key,
+          mesh.parts.empty() ? "the boundary of this mesh has no named parts; use boundary.mesh"
+          : part == "mesh"
+              ? fmt::format("boundary.mesh is fixed or natural, and no part; something flows in by boundary.NAME.flux, "
+                            "at the parts {}",
+                            fmt::join(names, ", "))
+              : fmt::format("the mesh has no part of this name; its parts are {}", fmt::join(names, ", ")));
     }
     const auto data = [&] { return std::make_shared<const Data>(settings, s.key, s.value, part, fields, numbers); };
     if (const auto [known, fresh] = keys.try_emplace(is_flux ? part + std::string(of_flux) : part, s.key); !fresh)
@@ -169,6 +175,13 @@ MeshBoundary::MeshBoundary(const Settings& settings, const Mesh& mesh, bool othe
       if (joined_[m].part == joined_[n].with) joined_.erase(joined_.begin() + static_cast<std::ptrdiff_t>(m));
 }
 
+bool keeps_constraint(double G, std::span<const double> slopes, std::span<const double> fields) {
+  constexpr double rounding = 1e-12;
+  double terms = 0;
+  for (std::size_t a = 0; a < slopes.size(); ++a) terms += std::abs(slopes[a] * fields[a]);
+  return std::abs(G) <= rounding * std::max(1.0, terms);
+}
+
 void MeshBoundary::put_on(MeshSpace& space) const {
   const Mesh& mesh = space.mesh;
   space.fixed = held_points(mesh, otherwise_fixed_, conditions_);
@@ -187,6 +200,26 @@ void MeshBoundary::put_on(MeshSpace& space) const {
     }
   for (const auto& [point, given] : driven) space.driven.push_back({point, given});
   for (const auto& [point, given] : fluxes) space.fluxes.push_back({point, given});
+}
+
+void MeshBoundary::require_constraint(const Settings& settings, const CellSpace& space) const {
+  if (!space.constraint || space.driven.empty()) return;
+  const std::size_t d = at(space.fields());
+  std::vector<double> row(space.fields_of_row());
+  for (const auto& [point, given] : space.driven)
+    for (std::size_t a = 0; a < d; ++a) row[at(point) * d + a] = given->value(static_cast<int>(a), 0);
+  std::map<std::size_t, double> broken;
+  space.each_constraint(row, [&](std::size_t i, double G, std::span<const double> slopes) {
+    if (!keeps_constraint(G, slopes, std::span(row).subspan(i * d, d))) broken.try_emplace(i, G);
+  });
+  for (const auto& motion : motions_)
+    for (const auto& [point, share] :
+         side_shares(space.mesh, std::ranges::find(space.mesh.parts, motion->part, &Mesh::Part::name)->sides))
+      if (const auto one = broken.find(at(point)); one != broken.end())
+        throw settings.error(motion->key,
+                             fmt::format("breaks the constraint at point {} of the mesh, where it is {:.3g} "
+                                         "and not 0 at t = 0; give formulas that keep it",
+                                         space.mesh.point_number(one->first), one->second));
 }
 
 void refuse_keys_of_lattices(const Settings& settings) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "tools/scene/settings.hpp"
 
 namespace delf {
+
+struct CellSpace;
 
 /// The conditions that a scene puts on the boundary of its mesh by boundary.mesh and boundary.NAME, NAME being a part of it:
 ///
@@ -31,6 +34,8 @@ class MeshBoundary {
   /// Puts the conditions on a mesh whose parts have been joined. A point between parts is driven if one is, or else held if
   /// one is.
   void put_on(MeshSpace&) const;
+  /// Throws BadScene for formulas whose values at t = 0 break the constraint of a space that they have been put on.
+  void require_constraint(const Settings&, const CellSpace&) const;
   /// The first key with a formula, of a value or a flux; empty: there is none.
   const std::string& key_of_formula() const { return key_of_formula_; }
   /// The first formula that reads t; empty: there is none.
@@ -46,6 +51,9 @@ class MeshBoundary {
   std::vector<JoinedParts> joined_;
   std::string key_of_formula_, key_that_reads_time_;
 };
+
+/// True if G is rounding, by Σ |∂G/∂φ φ|.
+bool keeps_constraint(double G, std::span<const double> slopes, std::span<const double> fields);
 
 /// Throws BadScene where boundary.NAME is a key of other spaces, which a part of a mesh may have as its name.
 void refuse_keys_of_lattices(const Settings&);

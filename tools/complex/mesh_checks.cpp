@@ -123,10 +123,14 @@ void MeshChecks::look_at_equations(const CheckedRows& given, const std::string& 
   // terms are rounding, as the differences of a constant field, they are no scale.
   constexpr double few = 8 * std::numeric_limits<double>::epsilon();
   const double scale = terms <= few * size ? size : std::max(terms, ValueError().of(size) / equations_.tolerance);
+  const bool by_cells = scene_.time == MeshTime::cells;
+  const std::vector<double> around = by_cells ? everywhere.sizes_of_stencils(y) : std::vector<double>();
   for (std::size_t n = 0; n < E.size(); ++n) {
     const std::size_t node = everywhere.equations()[n];
-    // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients.
-    const double own = scene_.time == MeshTime::cells ? equation_sizes[node] : scale;
+    // The times of a site may lie close together: the terms are those of y itself, Σ |∂E/∂y y|, not of its quotients. Where
+    // y is rounding at a site, as on the node of a standing wave, its equation is rounded like the stencils around.
+    const double own =
+        by_cells ? std::max(equation_sizes[node], ValueError().of(around[node]) / equations_.tolerance) : scale;
     if (equations_.take({E[n].sum, own, E[n].count}, where))
       equations_.region = fmt::format("{}, {}", name_of(given, everywhere.node(node).site), where),
       worst_site_ = equations_.region;

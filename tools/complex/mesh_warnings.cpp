@@ -54,6 +54,16 @@ std::vector<std::string> warnings_of_rows(const ComplexScene& c, const Outcome& 
   else if (!c.boundary_works())
     found.push_back(field_beyond_data(largest(last_row), std::max(largest(c.values()), o.time * largest(c.rates())),
                                       "the steps are too long, or the theory has no bounds; " + remedy));
+  if (c.theory->constraint() && c.space && !c.space->driven.empty()) {
+    double most = 0;
+    const std::size_t d = c.fields.size();
+    c.space->each_constraint(last_row, [&](std::size_t i, double, std::span<const double> slopes) {
+      double terms = 0;
+      for (std::size_t a = 0; a < d; ++a) terms += std::abs(slopes[a] * last_row[i * d + a]);
+      most = std::max(most, terms);
+    });
+    found.push_back(off_constraint(o.constraint_max, most, c.scene.problem.tolerance));
+  }
   std::vector<std::string> all;
   for (Found& one : found)
     if (one) all.push_back(std::move(*one));

@@ -141,7 +141,9 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
   const ConvergenceTable table = converge(whole, request.levels);
   const bool failed = table.status != "done" && table.status != "interrupted";
   const Scene* const on_lattice = std::is_same_v<Whole, Scene> ? &scene : nullptr;
-  const ConvergenceVerdict verdict = judge(table, request, on_lattice);
+  ConvergenceVerdict verdict = judge(table, request, on_lattice);
+  if (verdict.kind == ConvergenceVerdict::passed && !std::isfinite(verdict.order))
+    verdict.kind = ConvergenceVerdict::not_measured;
   const double order = verdict.order;
   const bool passed = !failed && verdict.accepted(request);
   make_results_folder(folder);
@@ -149,7 +151,8 @@ ExitCode converge_in(const fs::path& folder, const Scene& scene, const Whole& wh
   write_text_file(folder / "convergence.csv", csv_of(table));
   fmt::print("{}", report(scene, label, table));
   if (!table.ended.empty()) fmt::print("  ended      {}\n", table.ended);
-  if (on_lattice && verdict.kind == ConvergenceVerdict::passed) fmt::print("{}", floor_in_words(scene, table));
+  if (on_lattice && (verdict.kind == ConvergenceVerdict::passed || !std::isfinite(order)))
+    fmt::print("{}", floor_in_words(scene, table));
   if (table.status == "interrupted")
     fmt::print("  not finished (interrupted): {} of {} lines\n", table.levels.size(), request.levels);
   else if (!std::isfinite(order)) fmt::print("  order      not known: fewer than two errors above rounding\n");

@@ -42,18 +42,37 @@ void TextFile::fail() const {
       fmt::format("{}: {}; check that its disk has room and may be written to", path_.string(), std::strerror(errno)));
 }
 
-void write_text_file(const std::filesystem::path& path, std::string_view text) {
-  const std::filesystem::path part = path.string() + ".part";
+namespace {
+
+bool is_dangling(const std::filesystem::path& path) {
   std::error_code error;
+  return std::filesystem::is_symlink(path, error) && !std::filesystem::exists(path, error);
+}
+
+}  // namespace
+
+void write_text_file(const std::filesystem::path& given, std::string_view text) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path path = given;
+  if (const fs::file_status there = fs::status(given, error); fs::is_other(there) || is_dangling(given)) {
+    TextFile file(given);  // a device, a pipe, or a link to what is not there yet
+    file.write(text);
+    file.close();
+    return;
+  }
+  if (fs::is_symlink(given, error)) path = fs::canonical(given, error);
+  if (error) path = given;
+  const fs::path part = path.string() + ".part";
   try {
     TextFile file(part);
     file.write(text);
     file.close();
   } catch (...) {
-    std::filesystem::remove(part, error);
+    fs::remove(part, error);
     throw;
   }
-  std::filesystem::rename(part, path, error);
+  fs::rename(part, path, error);
   if (error) throw SystemFailure(fmt::format("{}: {}; choose another --out", path.string(), error.message()));
 }
 

@@ -34,7 +34,8 @@ class TextFile {
 /// A folder for results, made if it is not there. Throws SystemFailure.
 void make_results_folder(const std::filesystem::path&);
 
-/// The whole file at once, or not at all: it is written beside the one of that name, and takes its place.
+/// The whole file at once, or not at all: it is written beside the one of that name, and takes its place. A link stays, and
+/// what it points at is written; a device or a pipe is written to.
 void write_text_file(const std::filesystem::path&, std::string_view);
 
 }  // namespace delf

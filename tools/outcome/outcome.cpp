@@ -30,7 +30,8 @@ void Outcome::visit(SavedState& saved) {
   saved("momentum of row 0", momentum_initial), saved("momentum", momentum_final), saved("charge", charge_final);
   saved("largest constraint", constraint_max), saved("extremes of monitors", of_method);
   for (Conserved& c : conserved)
-    saved("conserved at row 0", c.initial), saved("conserved", c.final), saved("change of conserved", c.error_max);
+    saved("conserved at row 0", c.initial), saved("conserved", c.final), saved("change of conserved", c.error_max),
+        saved("conserved but at walls", c.at_walls);
 }
 
 }  // namespace delf

@@ -45,9 +45,13 @@ std::string time_of(const FieldsReader& rows, std::size_t frame) {
   return number_text(rows.time(static_cast<int>(frame)).value_or(static_cast<double>(frame)));
 }
 
+/// The name of a component, as figures write it: φ, or q on a point, unless the theory has names of its own.
 std::string name_of(const FieldsReader& rows, std::size_t component) {
   const std::vector<std::string> names = rows.names();
-  return component >= names.size() || names[component] == "phi" ? "φ" : names[component];  // as figures write it
+  const std::string name = component < names.size() ? names[component] : "phi";
+  const bool one = rows.components() == 1;
+  if (rows.sites() == 1 && name.starts_with("phi")) return one ? "q" : fmt::format("q{}", component + 1);
+  return one && name == "phi" ? "φ" : name;
 }
 
 /// The places where a row changes fastest: where |Δφ| is greatest among its neighbours, and half of the largest or more.
@@ -88,7 +92,7 @@ std::string ranges_of(const FieldsReader& rows) {
 
 /// Some rows, at some sites, of the first component; sites without one position each have their numbers.
 std::string rows_table(const FieldsReader& rows, const std::optional<std::vector<double>>& x) {
-  PageTable t{fmt::format("{} at some times and sites", name_of(rows, 0)), {"t"}, {}};
+  PageTable t{fmt::format("{} at some {}sites", name_of(rows, 0), rows.frames() > 1 ? "times and " : ""), {"t"}, {}};
   const std::vector<std::size_t> sites = spread(static_cast<std::size_t>(rows.sites()), 13);
   for (const std::size_t i : sites)
     t.headings.push_back(x ? fmt::format("x = {:.4g}", x->at(i)) : fmt::format("site {}", i));
@@ -118,12 +122,15 @@ FigureCaption of_rows(const ResultFolder& folder, const std::string& title) {
   caption.table = rows_table(*rows, places_of(folder, *rows, 0));
   const auto first_places = places_of(folder, *rows, 0), last_places = places_of(folder, *rows, last);
   if (!first_places || !last_places || rows->sites() < 2) return caption;
+  if (last == 0) {  // of a problem without time
+    caption.finding +=
+        fmt::format("{} changes fastest {}.", name_of(*rows, 0), fronts(component_of(*rows, 0, 0), *first_places));
+    return caption;
+  }
   caption.finding += fmt::format("{} changes fastest {} at t = {}", name_of(*rows, 0),
                                  fronts(component_of(*rows, 0, 0), *first_places), time_of(*rows, 0));
-  if (last > 0)
-    caption.finding +=
-        fmt::format(", and {} at t = {}", fronts(component_of(*rows, last, 0), *last_places), time_of(*rows, last));
-  caption.finding += ".";
+  caption.finding +=
+      fmt::format(", and {} at t = {}.", fronts(component_of(*rows, last, 0), *last_places), time_of(*rows, last));
   return caption;
 }
 
@@ -132,8 +139,10 @@ FigureCaption of_waveforms(const ResultFolder& folder) {
   const auto rows = rows_of(folder);
   if (!rows) return caption;
   const std::size_t last = static_cast<std::size_t>(rows->frames()) - 1;
-  caption.finding = fmt::format("At t = {} {}, at t = {} {}.", time_of(*rows, 0), range_of(*rows, 0, {0}),
-                                time_of(*rows, last), range_of(*rows, 0, {last}));
+  if (last == 0) caption.title = "The field over space";
+  else
+    caption.finding = fmt::format("At t = {} {}, at t = {} {}.", time_of(*rows, 0), range_of(*rows, 0, {0}),
+                                  time_of(*rows, last), range_of(*rows, 0, {last}));
   if (const auto error = number_in(folder.result("summary"), "error_linf"))
     caption.finding += fmt::format(" The last row is within {:.2g} of the exact solution.", *error);
   return caption;
@@ -312,7 +321,12 @@ FigureCaption caption_of(const ResultFolder& folder, const std::string& figure) 
   static const std::map<std::string, FigureCaption (*)(const ResultFolder&)> all{
       {"spacetime", [](const auto& f) { return of_rows(f, "The field over space and time"); }},
       {"waveforms", of_waveforms},
-      {"field", [](const auto& f) { return of_rows(f, "The field on its mesh, at some times"); }},
+      {"field",
+       [](const auto& f) {
+         const auto rows = rows_of(f);
+         return of_rows(f,
+                        rows && rows->frames() == 1 ? "The field on its mesh" : "The field on its mesh, at some times");
+       }},
       {"trajectory", [](const auto& f) { return of_point(f, "The coordinates over time"); }},
       {"orbit", [](const auto& f) { return of_point(f, "The orbit"); }},
       {"section",

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 namespace delf {
 namespace {
@@ -15,7 +16,7 @@ struct Meaning {
 };
 
 const Meaning meanings[] = {
-    {"energy_initial", "energy of row 0", "It is measured on the first rows, as the energy figure says.", ""},
+    {"energy_initial", "energy of row 0", "It is measured on the first rows.", ""},
     {"energy_final", "energy of the last row", "It is measured in the same way.", ""},
     {"energy_error_max", "largest relative change of the energy",
      "Variational schemes keep the energy within a band whose width goes as the square of the step, or a higher power.",
@@ -28,8 +29,10 @@ const Meaning meanings[] = {
      "a value that is not near a whole number, for a theory of angles"},
     {"residual_max", "largest residual of the equations",
      "It is divided by the sum of the absolute terms: 1e-16 is rounding.", "above 1e-10", 1e-10},
-    {"iterations_mean", "iterations of a step", "An explicit step has none.", "near scheme.max_iterations"},
-    {"iterations_max", "most iterations of a step", "An explicit step has none.", "near scheme.max_iterations"},
+    {"iterations_mean", "iterations of a step", "A step that is solved at once has none.",
+     "near scheme.max_iterations"},
+    {"iterations_max", "most iterations of a step", "A step that is solved at once has none.",
+     "near scheme.max_iterations"},
     {"constraint_max", "largest constraint", "The constraints G = 0 hold to this.", "above 1e-8", 1e-8},
     {"error_linf", "largest error of the last row", "It is the distance from the exact solution at one site.",
      "as large as the field itself"},
@@ -45,11 +48,24 @@ const Meaning meanings[] = {
 std::vector<PageNumber> numbers_of(const ResultFolder& folder) {
   const Json* summary = folder.result("summary");
   const double coarse = text_in(summary, "space") == "complex" ? 10 : 1;  // meshes are, as their warnings allow for
+  const bool on_point = text_in(summary, "space") == space_of_mechanics,
+             is_static = number_in(summary, "steps").value_or(1) == 0 && !number_in(summary, "time_step");
+  const std::string energy_of = text_in(summary, "energy_of");
+  // what says nothing of mechanics, or of a problem without time
+  const auto is_left_out = [&](const std::string& key) {
+    return (on_point && (key.starts_with("momentum_") || key == "charge_final")) ||
+           (is_static && (key == "energy_final" || key == "energy_error_max"));
+  };
   std::vector<PageNumber> numbers;
   for (const Meaning& m : meanings)
-    if (const auto value = number_in(summary, m.key))
+    if (const auto value = number_in(summary, m.key); value && !is_left_out(m.key)) {
       numbers.push_back(
           {m.name, number_text(value), m.meaning, m.worry, m.most && std::abs(*value) > coarse * *m.most});
+      if (std::string_view(m.key) != "energy_initial") continue;
+      if (is_static) numbers.back() = {"energy", number_text(value), "It is that of the solution.", ""};
+      else if (!energy_of.empty())
+        numbers.back().meaning = fmt::format("It is measured on the first rows: {}.", energy_of);
+    }
   for (const Json& sum : list_in(summary, "conserved")) {
     const auto error = number_in(&sum, "error_max");
     const bool at_walls = is_true_in(&sum, "at_walls");

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <set>
 
 #include "tools/files/text_file.hpp"
@@ -14,6 +16,7 @@
 #include "tools/page/markup.hpp"
 #include "tools/page/numbers.hpp"
 #include "tools/page/page_figures.hpp"
+#include "tools/page/same_scene.hpp"
 #include "tools/page/solved.hpp"
 #include "tools/page/verdict.hpp"
 #include "tools/report/machine.hpp"
@@ -57,7 +60,11 @@ std::string figure_html(const PageFigure& figure, const FigureCaption& caption, 
 std::string figures_section(const ResultFolder& folder, const std::vector<PageFigure>& figures) {
   std::string html;
   for (const PageFigure& figure : figures) html += figure_html(figure, caption_of(folder, figure.name), "");
-  return html.empty() ? paragraph("There are no figures: none were asked for, or gnuplot is missing.") : html;
+  if (!html.empty()) return html;
+  const auto asked = folder.keys.find("output.figures");
+  const bool off = asked != folder.keys.end() && asked->second == "off";
+  return paragraph(off ? "There are no figures: output.figures is off."
+                       : "There are no figures: gnuplot is missing, or they were not drawn.");
 }
 
 std::string verification_section(const ResultFolder& folder) {
@@ -78,6 +85,8 @@ std::string verification_section(const ResultFolder& folder) {
                    list_in(folder.result("summary"), "conserved"));
   if (const auto left_out = texts_in(verify, "left_out"); !left_out.empty())
     html += paragraph("Left out:") + list(left_out);
+  if (!other_scene(folder).empty())
+    html = paragraph("These are checks of another scene, and say nothing of the rows in this folder.") + html;
   if (!verify) html += paragraph("These rows have not been verified here. `delf verify scene.ini` does it.");
   return html;
 }
@@ -96,6 +105,34 @@ std::string monitors_section(const ResultFolder& folder) {
   return html.empty() ? paragraph("There is no series.csv, which has a line for each recorded row.") : html;
 }
 
+/// The command of a sweep, with all values of its keys.
+std::string sweep_command(const Json* sweep, bool has_scene) {
+  const std::string command = text_in(sweep, "command");
+  std::string text = fmt::format("delf {} {}", command.empty() ? "sweep" : command, has_scene ? "scene.ini" : "SCENE");
+  const std::vector<Json> runs = list_in(sweep, "runs");
+  const auto value_of = [](const Json& run, const std::string& key) {
+    const auto settings = run.is_object() ? run.find("settings") : run.end();
+    return settings == run.end() ? "" : text_in(&*settings, key);
+  };
+  for (const std::string& key : texts_in(sweep, "keys")) {
+    std::vector<std::string> values;
+    for (const Json& run : runs)
+      if (const std::string value = value_of(run, key); std::ranges::find(values, value) == values.end())
+        values.push_back(value);
+    if (sweep->contains("threshold") && !values.empty()) {  // all values are between those that it began with
+      const auto [low, high] =
+          std::ranges::minmax(values, {}, [](const std::string& v) { return std::strtod(v.c_str(), nullptr); });
+      text += fmt::format(" --sweep.bisect={}={}:{}", key, low, high);
+    } else text += fmt::format(" --{}={}", key, fmt::join(values, ","));
+  }
+  if (const auto threshold = sweep->find("threshold"); threshold != sweep->end())
+    text += fmt::format(" --sweep.level={} --sweep.number={}", number_text(number_in(&*threshold, "level")),
+                        text_in(&*threshold, "number"));
+  if (number_in(sweep, "runs_asked").value_or(0) > static_cast<double>(runs.size()))
+    text += "\n# It was interrupted: values of runs that were not made are not known.";
+  return text;
+}
+
 std::string again_section(const ResultFolder& folder) {
   if (folder.scene.empty()) return paragraph("There is no scene.ini here, so no command can be given.");
   static const std::vector<std::pair<std::string, std::string>> commands{{"verify", "verify"},
@@ -110,13 +147,12 @@ std::string again_section(const ResultFolder& folder) {
       text += fmt::format("delf {} scene.ini{}\n", command,
                           rows.empty() || rows == "rows computed here" ? "" : " --fields FILE");
     }
-  if (const Json* sweep = folder.result("sweep")) {
-    text += "delf sweep scene.ini";
-    for (const std::string& key : texts_in(sweep, "keys")) text += fmt::format(" --{}=…", key);
-    text += "\n";
-  }
+  const bool own = folder.scene_file == folder.path / "scene.ini";  // else it is that of the first run of a sweep
+  if (const Json* sweep = folder.result("sweep")) text += sweep_command(sweep, own) + "\n";
   return paragraph(
-             "scene.ini has every key in force. On the same machine and build it gives the same rows, to the bit.") +
+             own ? "scene.ini has every key in force. On the same machine and build it gives the same rows, to the bit."
+                 : "SCENE is the scene that the runs were made of, with the keys that were given beside those with several "
+                   "values. The scene.ini of a run gives its rows; this is that of the first.") +
          code_block("The command", text) + code_block("scene.ini", folder.scene);
 }
 
@@ -272,6 +308,12 @@ ExitCode write_page(const std::vector<fs::path>& folders, const std::optional<st
                                               : fs::path("report.html");
   const std::string page = page_of(folders);
   write_text_file(file, page);
+  if (page.size() > most_bytes)
+    std::fputs(
+        fmt::format("delf: {}: is larger than a million bytes; {}\n", file.string(),
+                    folders.size() > 1 ? "name fewer folders" : "its files have more text than a page has room for")
+            .c_str(),
+        stderr);
   fmt::print("{}: {} bytes\n", file.string(), page.size());
   return ExitCode::done;
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "tools/page/sha256.hpp"
@@ -29,6 +28,19 @@ const std::vector<std::string>& ResultFolder::kinds() {
   return all;
 }
 
+namespace {
+
+/// Other programs have files of these names, too.
+bool is_of_delf(const std::string& kind, const Json& json) {
+  static const std::map<std::string, std::vector<const char*>> keys{
+      {"summary", {"status"}}, {"verify", {"checks"}},      {"convergence", {"levels"}},
+      {"sweep", {"runs"}},     {"workprecision", {"runs"}}, {"stability", {"limits", "point_limits"}}};
+  return !text_in(&json, "version").empty() &&
+         std::ranges::any_of(keys.at(kind), [&](const char* key) { return json.contains(key); });
+}
+
+}  // namespace
+
 ResultFolder::ResultFolder(const fs::path& given) : path(given) {
   std::error_code none;
   if (!fs::is_directory(path, none))
@@ -39,8 +51,11 @@ ResultFolder::ResultFolder(const fs::path& given) : path(given) {
     const fs::path file = path / (kind + ".json");
     if (!fs::exists(file, none)) continue;
     Json json = Json::parse(file_text(file), nullptr, false);
-    if (json.is_object()) results.emplace(kind, std::move(json));
-    else missing.push_back(fmt::format("{}.json is damaged, and is not used.", kind));
+    if (!json.is_object()) {
+      damaged.insert(kind);
+      missing.push_back(fmt::format("{}.json is damaged, and is not used.", kind));
+    } else if (is_of_delf(kind, json)) results.emplace(kind, std::move(json));
+    else missing.push_back(fmt::format("{}.json is of another program, and is not used.", kind));
   }
   scene_file = path / "scene.ini";
   if (const auto runs = list_in(result("sweep"), "runs"); !runs.empty() && !fs::exists(scene_file, none))
@@ -50,16 +65,17 @@ ResultFolder::ResultFolder(const fs::path& given) : path(given) {
   for (const std::string& kind : kinds())
     if (const std::string of_scene = text_in(result(kind), "scene"); !of_scene.empty()) name = of_scene;
   read_series();
-  if (results.empty() && scene.empty() && series.empty())
+  if (results.empty() && damaged.empty() && scene.empty() && series.empty())
     throw BadScene(
         fmt::format("command line: report {}: holds no results of delf; name a folder that has a scene.ini, "
                     "summary.json or verify.json",
                     path.string()));
   list_files();
   if (scene.empty()) missing.emplace_back("There is no scene.ini: keys, equations and the command are not known.");
-  if (!result("summary") && has_file("series.csv"))
+  if (!result("summary") && !damaged.contains("summary") && !series.empty())
     missing.emplace_back("There is no summary.json: the run goes on still, or was killed.");
-  if (!result("verify")) missing.emplace_back("There is no verify.json: nobody has verified these rows here.");
+  if (!result("verify") && !damaged.contains("verify"))
+    missing.emplace_back("There is no verify.json: nobody has verified these rows here.");
   if (figures.empty()) missing.emplace_back("There are no figures.");
 }
 
@@ -79,7 +95,8 @@ void ResultFolder::read_series() {
       rest = *end == ',' ? end + 1 : end;
     }
   }
-  if (series.empty() || series.front().empty()) series.clear(), series_names.clear();
+  // a table without times is of another program
+  if (series.empty() || series.front().empty() || !column("time")) series.clear(), series_names.clear();
 }
 
 void ResultFolder::list_files() {

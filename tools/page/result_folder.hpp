@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct ResultFolder {
   std::filesystem::path path;
   std::string name;                     ///< of the scene, or of the folder
   std::map<std::string, Json> results;  ///< by the name of the file without ending; objects
+  std::set<std::string> damaged;        ///< names of files that are there and cannot be read
   std::filesystem::path scene_file;     ///< scene.ini, of a sweep that of its first run
   std::string scene;                    ///< its text
   std::map<std::string, std::string> keys;
@@ -52,6 +54,8 @@ struct ResultFolder {
 std::optional<double> number_in(const Json*, const std::string& key);
 std::string text_in(const Json*, const std::string& key);
 bool is_true_in(const Json*, const std::string& key);
+/// The value of `lattice.space` for mechanics, whose results have no sites.
+inline constexpr const char* space_of_mechanics = "point";
 /// The elements of a list; none if it is not there.
 std::vector<Json> list_in(const Json*, const std::string& key);
 /// Those of them that are texts.

@@ -7,6 +7,7 @@
 #include <exception>
 #include <optional>
 
+#include "schemes/methods/method_registry.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "tools/complex/complex_scene.hpp"
 #include "tools/outcome/outcome.hpp"
@@ -24,7 +25,7 @@ std::string formula(const char* label, const std::string& mathml) {
                      mathml);
 }
 
-std::string in_mathml(const DisplayedEquations& equations) {
+std::string in_mathml(const DisplayedEquations& equations, bool on_point) {
   std::string html = "<h3>Density</h3>\n" + formula("The Lagrangian density", equations.density);
   html += equations.of_fields.size() > 1 ? "<h3>Field equations</h3>\n" : "<h3>Field equation</h3>\n";
   for (const std::string& equation : equations.of_fields) html += formula("A field equation", equation);
@@ -33,7 +34,10 @@ std::string in_mathml(const DisplayedEquations& equations) {
            paragraph("The equations of this scheme on the lattice have no stencil, and are not written out here.");
   html +=
       "<h3>Discrete equations</h3>\n" +
-      paragraph("They hold at every row j and site i, and are divided by hk: h is the time step, k the space step.");
+      paragraph(
+          on_point
+              ? "They hold at every row j, and are divided by the time step h."
+              : "They hold at every row j and site i, and are divided by hk: h is the time step, k the space step.");
   for (const std::string& equation : equations.discrete) html += formula("A discrete field equation", equation);
   return html;
 }
@@ -52,6 +56,8 @@ std::string said(const ResultFolder& folder, const char* key, const char* in_sum
 SolvedProblem solved_problem(const ResultFolder& folder) {
   SolvedProblem solved;
   std::string waves, scheme;
+  const std::string method = said(folder, "scheme.method", "method"), space = said(folder, "lattice.space", "space");
+  const bool on_point = space == space_of_mechanics, on_cells = space == "complex";
   try {
     if (folder.scene.empty()) throw BadScene("there is no scene.ini");
     Settings settings = read_settings(folder.scene_file, {});
@@ -64,7 +70,11 @@ SolvedProblem solved_problem(const ResultFolder& folder) {
       if (folder.keys.contains("theory.density"))
         solved.what += code_block("The Lagrangian density", folder.keys.at("theory.density"));
       solved.what += paragraph(
-          "Space is a mesh, where φ_xx stands for the Laplacian, and the equations differ from site to site.");
+          method == "complex" ? "Spacetime is a complex of cells, and the equations differ from site to site."
+          : method == "elliptic"
+              ? "Space is a mesh and there is no time: φ_tt is left out, φ_xx stands for the Laplacian, and the equations "
+                "differ from site to site."
+              : "Space is a mesh, where φ_xx stands for the Laplacian, and the equations differ from site to site.");
     } else {
       const Scene read = read_scene(std::move(settings));
       constexpr int most_sites = 200000;  // of which a simulation is made in no time
@@ -73,7 +83,8 @@ SolvedProblem solved_problem(const ResultFolder& folder) {
         throw BadScene(fmt::format("`delf plan` prints the equations of more than {} sites", most_sites));
       const Simulation simulation =
           build(read, static_cast<int>(number_in(folder.result("summary"), "winding").value_or(0)));
-      if (const auto equations = equations_in_mathml(read.problem, simulation)) solved.what += in_mathml(*equations);
+      if (const auto equations = equations_in_mathml(read.problem, simulation))
+        solved.what += in_mathml(*equations, on_point);
       else solved.what += paragraph("The theory is compiled, and its density has no text to be printed.");
       waves = waves_in_words(read, simulation);
     }
@@ -86,12 +97,16 @@ SolvedProblem solved_problem(const ResultFolder& folder) {
   };
   add("initial state", said(folder, "initial.state", "state"));
   add("scheme", scheme);
-  add("method", said(folder, "scheme.method", "method"));
-  add("stencil", said(folder, "lattice.stencil", "stencil"));
-  add("space", said(folder, "lattice.space", "space"));
-  add("length", said(folder, "lattice.length", "length"));
-  add("sites", said(folder, "lattice.sites", "sites"));
-  add("space step k", said(folder, "", "space_step"));
+  add("method", method);
+  const auto named = std::ranges::find(method_entries(), method, &MethodEntry::name);
+  if (on_cells || (named != method_entries().end() && (*named)->reads_stencil))  // others have one of their own
+    add(on_cells ? "cells" : "stencil", said(folder, "lattice.stencil", "stencil"));
+  add("space", space);
+  if (!on_point) {
+    add("length", said(folder, "lattice.length", "length"));
+    add("sites", said(folder, "lattice.sites", "sites"));
+    add("space step k", said(folder, "", "space_step"));
+  }
   add("time step h", said(folder, "lattice.time_step", "time_step"));
   add("limit of the step", said(folder, "", "step_limit"));
   add("waves, by linear theory", waves);

@@ -25,7 +25,7 @@ nav ul { list-style: none; padding: 0; display: flex; flex-wrap: wrap; gap: .2re
 .verdict.good strong { color: var(--good) }
 .verdict ul { margin: .4rem 0; padding-left: 1.2rem }
 .quiet, caption, figcaption small { color: var(--quiet) }
-.wide, pre, .formula { overflow-x: auto; margin: .8rem 0 }
+.wide, pre, .formula { overflow-x: auto; overflow-y: hidden; margin: .8rem 0 }
 table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums }
 caption { text-align: left; padding-bottom: .3rem }
 th, td { text-align: left; vertical-align: top; padding: .25rem .9rem .25rem 0; border-bottom: 1px solid var(--line);

@@ -11,12 +11,14 @@
 #include <numeric>
 
 #include "lattice/index.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/monodromy.hpp"
 #include "schemes/moving_start.hpp"
 #include "schemes/start_values.hpp"
 #include "schemes/stepping/step_density.hpp"
 #include "schemes/system/constraint_slopes.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/rows/exact_solution.hpp"
 #include "tools/rows/frame_of.hpp"
@@ -44,9 +46,15 @@ void require_formula_has_value(const Scene& scene, std::size_t field, bool rate,
 /// Throws BadScene for a rule that the state, or the density, does not allow.
 void check_rule(const Scene& scene, const State& state, StartRule rule) {
   const Settings& settings = scene.settings;
-  if (rule == StartRule::exact && !state.knows_second_row())
-    throw settings.error("initial.start", fmt::format("the second row of this state is not known; use {}",
-                                                      may_start_from_values(scene.problem) ? "values" : "centred"));
+  if (rule == StartRule::exact && !state.knows_second_row()) {
+    const Problem& p = scene.problem;
+    const bool constrained =
+        p.lattice.space() != Space::point && make_theory(find_theory(p.theory), p.parameters)->constraint() != nullptr;
+    throw settings.error("initial.start", fmt::format("the second row of this state is not known; {}",
+                                                      constrained                ? "give a solution as exact.FIELD"
+                                                      : may_start_from_values(p) ? "use values"
+                                                                                 : "use centred"));
+  }
   if (rule == StartRule::centred && is_of_first_order_in_time(scene.problem))
     throw settings.error("initial.start",
                          "the density is linear in phi_t, so that no rate enters row 1; use values, or leave it out");
@@ -86,6 +94,27 @@ void require_independent(const Scene& scene, const StencilFamily& constraint, st
                         row.size() > d ? fmt::format(", at site {}", i) : ""));
       for (double& x : rest) x /= left;
       units.push_back(std::move(rest));
+    }
+  }
+}
+
+/// Throws BadScene for a driven end whose formulas break a constraint at the start.
+void require_constraints_at_ends(const Scene& scene, const FieldTheory& theory) {
+  const auto constraint = theory.constraint();
+  if (!constraint) return;
+  ConstraintSlopes G(*constraint, at(theory.components()));
+  for (const char* key : {left_end, right_end}) {
+    std::vector<double> fields;
+    for (const FormulaOfTime& of : motion_of_end(theory, scene.problem, key)) fields.push_back(of(0));
+    for (std::size_t m = 0; m < G.constraints() && !fields.empty(); ++m) {
+      const double value = G.at(m, fields);
+      constexpr double small = 1e-8;
+      double size = 0;
+      for (std::size_t a = 0; a < fields.size(); ++a) size += std::abs(G.slopes()[a] * fields[a]);
+      if (!(std::abs(value) <= small * std::max(size, 1.0)))
+        throw scene.settings.error(
+            key, fmt::format("breaks the constraint{}: it is {:.6g} at t = 0, and not 0; give formulas that keep it",
+                             G.constraints() > 1 ? fmt::format(" {}", m + 1) : "", value));
     }
   }
 }
@@ -204,6 +233,7 @@ void InitialRows::check(const Simulation& simulation) const {
   // the positions of sites that move are the method's to find
   if (here == (state_ && starts_by_sites(simulation, scene_.problem) ? simulation.theory().components() : fields)) {
     if (file_) require_positions(simulation);
+    require_constraints_at_ends(scene_, simulation.theory());
     require_constraints(scene_, simulation.theory(), file_ ? file_row(simulation, 0) : row0());
     return;
   }

@@ -238,12 +238,7 @@ std::int64_t read_steps(const Settings& settings, const Values& values, double t
   if (!(steps <= find_key("run.steps")->range.high))
     throw settings.error(
         "run.until", fmt::format("is {:.3g} steps of {:.3g}, more than can be counted; use less", steps, time_step));
-  if (steps == 0 && values.real("run.until") > 0)
-    throw settings.error("run.until", fmt::format("is less than half a step, {:.4g}: no step would be taken; lower "
-                                                  "{}, or take run.steps",
-                                                  time_step,
-                                                  values.given("lattice.time_step") ? "lattice.time_step"
-                                                                                    : "lattice.courant, which is h/k"));
+  require_a_step(settings, values, static_cast<std::int64_t>(steps), time_step);
   return static_cast<std::int64_t>(steps);
 }
 
@@ -310,6 +305,16 @@ void read_parameters(const Values& values, Problem& p) {
   if (theory.further)
     for (const Parameter& parameter : theory.further(p.parameters))
       p.parameters[parameter.key] = values.parameter(parameter);
+}
+
+void require_a_step(const Settings& settings, const Values& values, std::int64_t steps, double time_step) {
+  if (steps > 0 || !(values.real("run.until") > 0)) return;
+  throw settings.error(
+      "run.until",
+      fmt::format("is less than half a step, {:.4g}: no step would be taken; lower {}, or take run.steps", time_step,
+                  values.given("lattice.time_step") ? "lattice.time_step"
+                  : settings.find("lattice.mesh")   ? "lattice.courant"
+                                                    : "lattice.courant, which is h/k"));
 }
 
 void read_output(const Settings& settings, const Values& values, int usual, Scene& scene) {

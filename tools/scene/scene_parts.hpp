@@ -12,5 +12,7 @@ namespace delf {
 void read_parameters(const Values&, Problem&);
 /// [output]: fields, figures and checkpoints; and every how many rows, some `usual` records unless the scene says.
 void read_output(const Settings&, const Values&, int usual, Scene&);
+/// Throws BadScene where run.until is above 0, and less than half a step: `steps` are none.
+void require_a_step(const Settings&, const Values&, std::int64_t steps, double time_step);
 
 }  // namespace delf

@@ -34,11 +34,17 @@ struct MeshFinding {
   bool agrees = true;
 };
 
+bool is_of_theory(const std::string& key) { return key.starts_with("theory."); }
+
 /// Noise of the linear theory stays as small as it is. With steps that double it is at `grown` after some 20.
 bool stays(const ComplexScene& c, const NamedScheme& scheme, double h) {
   Problem problem = c.problem_on_mesh();
-  problem.method = scheme.problem.method, problem.parameters = scheme.problem.parameters;
-  problem.time_step = h;
+  problem.method = scheme.problem.method, problem.time_step = h;
+  problem.parameters = {};
+  for (const auto& [key, value] : c.scene.problem.parameters)
+    if (is_of_theory(key)) problem.parameters[key] = value;
+  for (const auto& [key, value] : scheme.problem.parameters)
+    if (!is_of_theory(key)) problem.parameters[key] = value;
   // a boundary that is driven is no small wave
   if (c.boundary_works())
     problem.lattice = Lattice::on(std::make_shared<MeshSpace>(MeshSpace{c.space->mesh, c.space->fixed}));

@@ -83,6 +83,7 @@ std::string sweep_csv(const SweepRequest& request, const SweepOutcome& outcome) 
 std::string sweep_json(const SweepRequest& request, const SweepOutcome& outcome) {
   Json json = json_head(outcome.scene);
   json["status"] = outcome.status;
+  json["command"] = request.compare ? "compare" : "sweep";
   json["keys"] = request.keys;
   json["number"] = text_or_null(outcome.number);
   json["jobs"] = request.jobs;

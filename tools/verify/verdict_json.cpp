@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 
 #include "tools/outcome/findings_json.hpp"
+#include "tools/scene/keys.hpp"
+#include "tools/scene/values.hpp"
 #include "tools/verify/verdict.hpp"
 
 namespace delf {
@@ -53,6 +57,31 @@ std::vector<SiteSeverity> worst_of(std::vector<SiteSeverity> sites) {
   return sites;
 }
 
+/// The keys that rows depend on, as a resolved scene has them: they tell whose verification it is.
+Json settings_of(const Scene& scene) {
+  const Problem& p = scene.problem;
+  Json settings = Json::object();
+  const auto is_of_rows = [](const std::string& key) {
+    // names of files are written in many ways, and the rule of the first rows is chosen with them
+    for (const char* other : {"initial.start", "initial.file", "lattice.mesh", "lattice.time_steps", "lattice.courant",
+                              "lattice.first_row", "run.until", "run.steps"})
+      if (key == other) return false;
+    const auto section = section_of(key);
+    return section == "theory" || section == "lattice" || section == "scheme" || section == "initial" ||
+           key == "run.seed";
+  };
+  for (const Parameter& key : scene.settings.all_keys())
+    if (is_of_rows(key.key))
+      if (const auto value = Values(scene.settings).text(key.key)) settings[key.key] = *value;
+  if (!p.stencil.empty()) settings["lattice.stencil"] = p.stencil;
+  if (p.time_step > 0) settings["lattice.time_step"] = fmt::format("{}", p.time_step);
+  if (settings.contains("scheme.tolerance") && Values(scene.settings).real("scheme.tolerance") < p.tolerance)
+    settings["scheme.tolerance"] = fmt::format("{}", p.tolerance);
+  if (scene.until) settings["run.until"] = Values(scene.settings).text("run.until").value_or("");
+  else settings["run.steps"] = fmt::format("{}", scene.steps);
+  return settings;
+}
+
 constexpr auto of_each = [](const auto& one) { return json_of(one); };
 
 }  // namespace
@@ -65,6 +94,7 @@ std::string verdict_json(const Subject& subject, const Scene& scene, const Verdi
   json["method"] = p.method;
   json["sites"] = subject.sites;
   json["time_step"] = p.time_step;
+  json["settings"] = settings_of(scene);
   json["seed"] = v.seed;
   json["subject"] = v.subject;
   json["status"] = v.status;

@@ -55,6 +55,15 @@ Found error_beyond_range(const Outcome& outcome, double range, const std::string
                      outcome.error_linf, range, remedy);
 }
 
+Found off_constraint(double found, double terms, double tolerance) {
+  constexpr double rounding = 1e-8;
+  if (!(found > std::max(rounding, 1e3 * tolerance) * std::max(1.0, terms))) return {};
+  return fmt::format(
+      "the boundary moves off the constraint, which is {:.3g} there and not 0: the run is none of this theory; give "
+      "formulas that keep it at all times",
+      found);
+}
+
 Found field_beyond_data(double found, double data, const std::string& reason) {
   constexpr double much = 100;
   if (found <= much * data) return {};

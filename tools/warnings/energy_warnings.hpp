@@ -26,6 +26,8 @@ Found energy_off_start(const Outcome&, double energy_of_start, double allowed, c
 Found energy_off_band(const Trace& energy_errors, const std::string& remedy);
 /// The error of the last row is larger than the range of the solution.
 Found error_beyond_range(const Outcome&, double range, const std::string& remedy);
+/// Where the boundary moves by formulas, fields leave the surface of a constraint by more than rounding; `terms`: Σ |∂G/∂φ φ|.
+Found off_constraint(double largest, double terms, double tolerance);
 /// A field without a solution to compare with is a hundred times as large as its data.
 Found field_beyond_data(double found, double data, const std::string& reason);
 

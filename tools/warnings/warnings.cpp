@@ -18,6 +18,7 @@
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/saved_state.hpp"
+#include "schemes/system/constraint_slopes.hpp"
 #include "schemes/theories/field_theory.hpp"
 #include "tools/compare/refined_scene.hpp"
 #include "tools/compare/solution_error.hpp"
@@ -157,12 +158,36 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   if (!normal.empty()) all.push_back(normal);
   for (Found& found : std::vector<Found>{narrow_pulse(), linear_limit(outcome), spurious_mode(last_row),
                                          at_ends || !normal.empty() ? Found() : energy(outcome), band(),
-                                         at_ends ? Found() : error(outcome), at_ends, without_solution(),
-                                         pinned(outcome, last_row), phase(outcome, last_row)})
+                                         at_ends ? Found() : error(outcome), at_ends, driven_off_constraint(outcome),
+                                         without_solution(), pinned(outcome, last_row), phase(outcome, last_row)})
     if (found) all.push_back(std::move(*found));
   std::ranges::move(grown(), std::back_inserter(all));
   std::ranges::move(continued(outcome), std::back_inserter(all));
   return all;
+}
+
+/// Driven ends have no equation: their formulas are looked at themselves.
+Found Warnings::driven_off_constraint(const Outcome& outcome) const {
+  const FieldTheory& theory = simulation_.theory();
+  const auto constraint = theory.constraint();
+  if (!constraint) return {};
+  constexpr int times = 256;
+  ConstraintSlopes G(*constraint, at(theory.components()));
+  double most = 0, terms = 0;
+  for (const char* key : {left_end, right_end}) {
+    const FormulasOfTime motion = motion_of_end(theory, scene_.problem, key);
+    for (int n = 0; n <= times && !motion.empty(); ++n) {
+      std::vector<double> fields;
+      for (const FormulaOfTime& of : motion) fields.push_back(of(outcome.time * n / times));
+      for (std::size_t m = 0; m < G.constraints(); ++m) {
+        most = std::max(most, std::abs(G.at(m, fields)));
+        double sum = 0;
+        for (std::size_t a = 0; a < fields.size(); ++a) sum += std::abs(G.slopes()[a] * fields[a]);
+        terms = std::max(terms, sum);
+      }
+    }
+  }
+  return off_constraint(most, terms, scene_.problem.tolerance);
 }
 
 Found Warnings::narrow_pulse() const {

@@ -39,6 +39,7 @@ class Warnings {
   Found energy(const Outcome&) const;
   Found error(const Outcome&) const;
   Found ends(const Outcome&) const;
+  Found driven_off_constraint(const Outcome&) const;
   Found without_solution() const;
   Found pinned(const Outcome&, std::span<const double> last_row) const;
   Found phase(const Outcome&, std::span<const double> last_row) const;

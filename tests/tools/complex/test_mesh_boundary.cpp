@@ -249,10 +249,12 @@ TEST_CASE("conditions that a mesh's boundary cannot have are refused in one line
            "moves by a formula of t, x, y and z"});
   refused("rows.ini --boundary.left='sin('", {"boundary.left"});
   refused("rows.ini --boundary.left='q*t'", {"boundary.left", "q"});
-  refused("rows.ini --boundary.left='sin(t); cos(t)'", {"gives 2, and the fields are phi; give a formula for each"});
+  refused("rows.ini --boundary.left='sin(t); cos(t)'", {"gives 2 formulas, and the fields are phi; give one for each"});
   refused("rows.ini --boundary.left=fixed --boundary.left.flux=t",
           {"is for a natural part, and boundary.left keeps the value"});
   refused("rows.ini --boundary.middle.flux=t", {"the mesh has no part of this name"});
+  refused("rows.ini --boundary.mesh.flux=t", {"boundary.mesh is fixed or natural, and no part", "boundary.NAME.flux"});
+  refused("rows.ini --run.until=1e-9", {"run.until", "is less than half a step"});
   refused("rows.ini --boundary.left='sin(t)' --boundary.part.left=fixed", {"is the part that boundary.left names too"});
   refused("rows.ini --boundary.left.flux=t --boundary.part.left.flux=t",
           {"is the part that boundary.left.flux names too"});
@@ -353,4 +355,65 @@ TEST_CASE("several constraints are kept on a mesh, by rows and at rest, each wit
   const std::vector<double> map = last_row(folder, "out");
   for (std::size_t p = 0; p < map.size() / 3; ++p)
     CHECK(std::atan2(map[3 * p + 1], map[3 * p]) == Approx(0.5 * 3.0 * static_cast<double>(p % 13) / 12).margin(1e-9));
+}
+
+TEST_CASE("formulas that break a constraint at the start are refused by their key, and later ones are warned of") {
+  const Folder folder;
+  const std::string theory =
+      "[theory]\nname = text\nfields = u, v\ndensity = 0.5*(u_t^2 + v_t^2 - u_x^2 - v_x^2)\n"
+      "constraint = u^2 + v^2 - 1\n";
+  const std::string end =
+      "[boundary]\nright = natural\n[exact]\nu = cos(x - t)\nv = sin(x - t)\n"
+      "[run]\nuntil = 0.5\n[output]\nfigures = off\n";
+  folder.write("mesh.ini",
+               theory + "[lattice]\nspace = complex\nmesh = quadrilaterals:2,1,8,4\ntime_step = 0.03\n" + end);
+  folder.write(
+      "line.ini",
+      theory + "[lattice]\nspace = interval\nlength = 2\nsites = 21\ncourant = 0.5\nstencil = rectangle\n" + end);
+  for (const std::string scene : {"mesh.ini", "line.ini"}) {
+    CAPTURE(scene);
+    const std::string run = "run " + scene + " --out out --boundary.left=";
+    const std::string mesh = scene == "mesh.ini" ? " --boundary.mesh=natural" : "";
+    REQUIRE(delf_program(folder, run + "'cos(t); -sin(t)'" + mesh).code == 0);
+    CHECK_FALSE(contains(summary(folder)["warnings"].dump(), "off the constraint"));
+    const Ran leaves = delf_program(folder, run + "'cos(t) + 0.2*t; -sin(t)'" + mesh);
+    CAPTURE(leaves.out, leaves.err);
+    CHECK(leaves.code == 0);
+    CHECK(contains(summary(folder)["warnings"].dump(), "the boundary moves off the constraint"));
+    check_refused(delf_program(folder, run + "'1.2*cos(t); -sin(t)'" + mesh),
+                  {"boundary.left", "breaks the constraint", "give formulas that keep it"});
+  }
+  // a lattice with a constraint starts from a solution alone, and each rule says so
+  folder.write("start.ini",
+               theory +
+                   "[lattice]\nspace = interval\nlength = 2\nsites = 21\ncourant = 0.5\nstencil = rectangle\n"
+                   "[initial]\nu = 1\nv = 0\n[run]\nuntil = 0.5\n");
+  for (const char* rule : {"", " --initial.start=exact"})
+    check_refused(delf_program(folder, "run start.ini --out none" + std::string(rule)),
+                  {"initial.start", "give a solution as exact.FIELD"});
+}
+
+TEST_CASE("asynchronous cells on the node of a standing wave, where all terms are rounding, verify") {
+  const Folder folder;
+  folder.write("node.ini",
+               "[theory]\nname = text\ndensity = 0.5*phi_t^2 - 0.5*phi_x^2\n"
+               "[lattice]\nspace = complex\nmesh = rectangle:2,1,16,8\ncourant = 0.3\ntime = cells\n"
+               "[boundary]\nmesh = natural\n[exact]\nphi = cos(pi*x)*cos(2*pi*y)*cos(pi*sqrt(5)*t)\n"
+               "[run]\nuntil = 0.5\n[output]\nfigures = off\n");
+  const Ran verified = delf_program(folder, "verify node.ini --out v");
+  CAPTURE(verified.out, verified.err);
+  CHECK(verified.code == 0);
+  for (const char* fault : {"field", "sign"})
+    CHECK(delf_program(folder, "verify node.ini --out v --verify.fault=" + std::string(fault)).code == 1);
+}
+
+TEST_CASE("limits on a mesh are found of a density that the scene gives as text") {
+  const Folder folder;
+  folder.write("text.ini",
+               "[theory]\nname = text\ndensity = 0.5*phi_t^2 - 0.5*phi_x^2 - 0.5*phi^2\n"
+               "[lattice]\nspace = complex\nmesh = quadrilaterals:3,1,6,2\ncourant = 0.3\n"
+               "[initial]\nphi = 0\n[run]\nuntil = 1\n[output]\nfigures = off\n");
+  const Ran limits = delf_program(folder, "stability text.ini --out l");
+  CAPTURE(limits.out, limits.err);
+  CHECK(limits.code == 0);
 }

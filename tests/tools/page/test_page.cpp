@@ -29,6 +29,19 @@ std::size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
+bool is_good(const std::string& page) { return contains(page, "class=\"verdict good\""); }
+
+/// The page of a folder that has this one result of delf, made by hand.
+std::string page_of_result(const Folder& folder, const std::string& file, const std::string& members) {
+  fs::create_directories(folder / "by-hand");
+  folder.write("by-hand/" + file, "{\"version\": \"0.1.0\", \"scene\": \"kink\", " + members + "}");
+  const Ran ran = delf_program(folder, "report by-hand");
+  INFO(ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(complaint(folder, "by-hand/report.html") == "");
+  return read(folder / "by-hand/report.html");
+}
+
 }  // namespace
 
 TEST_CASE("text in a page is escaped, and bytes that are no UTF-8 are replaced") {
@@ -128,15 +141,37 @@ TEST_CASE("the page of a run that failed, was interrupted or killed says so and 
     CHECK(contains(page, "There are no figures"));
     CHECK(complaint(folder, "here/report.html") == "");
   }
+  SECTION("killed before its first checkpoint") {
+    REQUIRE(delf_program(folder, "run collision --run.until=2 --output.figures=off --out here").code == 0);
+    fs::remove(folder / "here/summary.json");
+    REQUIRE(delf_program(folder, "report here").code == 0);
+    CHECK(contains(read(folder / "here/report.html"), "goes on with it from its last checkpoint"));
+    for (const char* name : {"checkpoint", "checkpoint.previous"}) fs::remove(folder / "here" / name);
+    REQUIRE(delf_program(folder, "report here").code == 0);
+    CHECK(contains(read(folder / "here/report.html"), "It has no checkpoint to go on from: run it anew."));
+  }
+  SECTION("damaged summary") {
+    fs::create_directory(folder / "here");
+    folder.write("here/summary.json", "{\"version\": \"0.1.0\", \"sta");
+    folder.write("here/series.csv", "row,time,energy\n0,0,1\n1,0.5,1\n");
+    REQUIRE(delf_program(folder, "report here").code == 0);
+    const std::string page = read(folder / "here/report.html");
+    CHECK(contains(page, "summary.json is damaged, and its results are not known."));
+    CHECK_FALSE(contains(page, "was killed"));
+    CHECK(count(page, "summary.json is damaged, and is not used.") == 1);
+    CHECK_FALSE(is_good(page));
+  }
   SECTION("damaged") {
     REQUIRE(delf_program(folder, "run collision --run.until=2 --out here").code == 0);
-    folder.write("here/summary.json", "{\"status\": \"done\", \"warnings\": 7, \"conserved\": [3], \"time\": \"x\"}");
+    folder.write(
+        "here/summary.json",
+        "{\"version\": \"0.1.0\", \"status\": \"done\", \"warnings\": 7, \"conserved\": [3], \"time\": \"x\"}");
     folder.write("here/verify.json", "{\"checks\": [");
     folder.write("here/fields.h5", "nothing");
     folder.write("here/scene.ini", "[theory]\nname = <b>\xff & no theory\n");
     REQUIRE(delf_program(folder, "report here").code == 0);
     const std::string page = read(folder / "here/report.html");
-    CHECK(contains(page, "verify.json is damaged"));
+    CHECK(contains(page, "verify.json is damaged, and its results are not known."));
     CHECK(contains(page, "No equations are printed here"));
     CHECK_FALSE(contains(page, "<b>"));
     CHECK(complaint(folder, "here/report.html") == "");
@@ -146,7 +181,7 @@ TEST_CASE("the page of a run that failed, was interrupted or killed says so and 
 TEST_CASE("a page has a million bytes at most: PNG in place of SVG, and then no figure") {
   const Folder folder;
   fs::create_directories(folder / "here/figures");
-  folder.write("here/summary.json", "{\"status\": \"done\"}");
+  folder.write("here/summary.json", "{\"version\": \"0.1.0\", \"status\": \"done\"}");
   const std::string rest(600000, ' ');
   folder.write("here/figures/energy.svg", "<svg xmlns='http://www.w3.org/2000/svg'>" + rest + "</svg>");
   folder.write("here/figures/energy.png", "\x89PNG small");
@@ -159,6 +194,123 @@ TEST_CASE("a page has a million bytes at most: PNG in place of SVG, and then no 
   CHECK(count(page, "<img ") == 2);
   CHECK(count(page, "data:image/png;base64,") + count(page, "data:image/svg+xml,") == 2);
   CHECK(count(page, "data:image/png;base64,") == 1);
+}
+
+TEST_CASE("a verification of another scene is not counted") {
+  const Folder folder;
+  REQUIRE(delf_program(folder, "verify kink --run.until=1 --output.figures=off --out here").code == 0);
+  REQUIRE(delf_program(folder, "run kink --run.until=1 --output.figures=off --out here").code == 0);
+  REQUIRE(delf_program(folder, "report here").code == 0);
+  CHECK(contains(read(folder / "here/report.html"), "Verification passed: all"));
+  const auto with = [&](const std::string& key) {
+    const std::string until = key.starts_with("--run.until") ? "" : " --run.until=1";
+    REQUIRE(delf_program(folder, "run kink --output.figures=off --out here " + key + until).code == 0);
+    REQUIRE(delf_program(folder, "report here").code == 0);
+    CHECK(complaint(folder, "here/report.html") == "");
+    return read(folder / "here/report.html");
+  };
+  for (const char* key : {"--lattice.stencil=triangle", "--theory.mass=1.5", "--initial.speed=0.25", "--run.until=2"}) {
+    INFO(key);
+    const std::string page = with(key);
+    CHECK(contains(page, "The verification in this folder is of another scene, and is not counted."));
+    CHECK_FALSE(contains(page, "Verification passed"));
+  }
+  CHECK(contains(with("--theory.mass=1.5"), "theory.mass is 1 in verify.json, and 1.5 in scene.ini"));
+}
+
+TEST_CASE("a verdict counts what is done, and no more") {
+  const Folder folder;
+  const std::string check = "{\"name\": \"noether\", \"passed\": true}";
+  SECTION("interrupted verification") {
+    const std::string page = page_of_result(
+        folder, "verify.json",
+        "\"subject\": \"rows computed here\", \"status\": \"interrupted\", \"passed\": true, \"checks\": [" + check +
+            "]");
+    CHECK(
+        contains(page, "1 of 1 checks passed so far for rows computed here. It was interrupted, and is not finished."));
+    CHECK_FALSE(is_good(page));
+  }
+  SECTION("verification that contradicts itself, or is empty") {
+    CHECK_FALSE(is_good(page_of_result(
+        folder, "verify.json",
+        R"("status": "done", "passed": true, "checks": [{"name": "noether", "passed": false, "failure": "why"}])")));
+    CHECK_FALSE(is_good(page_of_result(folder, "verify.json", R"("status": "done", "passed": true, "checks": [])")));
+  }
+  SECTION("interrupted convergence") {
+    const std::string page = page_of_result(
+        folder, "convergence.json",
+        R"("status": "interrupted", "order": null, "order_of_scheme": 2, "passed": true, "verdict": "passed", "levels": [{}])");
+    CHECK(contains(page, "was not measured, and the scheme"));
+    CHECK(contains(page, "It was interrupted after 1 line, and is not finished."));
+    CHECK_FALSE(contains(page, ": passed."));
+    CHECK_FALSE(is_good(page));
+  }
+  SECTION("an order below rounding") {
+    const std::string page = page_of_result(
+        folder, "convergence.json",
+        R"("status": "done", "order": null, "order_of_scheme": 2, "passed": true, "verdict": "passed", "levels": [{}, {}])");
+    CHECK_FALSE(contains(page, ": passed."));
+    CHECK_FALSE(is_good(page));
+  }
+  SECTION("a sweep with warnings") {
+    const std::string page =
+        page_of_result(folder, "sweep.json", R"("status": "done", "runs_asked": 2, "keys": ["run.seed"],
+      "runs": [{"status": "done", "folder": "runs/a", "settings": {"run.seed": "1"}, "summary": {"warnings": []}},
+               {"status": "done", "folder": "runs/b", "settings": {"run.seed": "2"}, "summary": {"warnings": ["too steep"]}}])");
+    CHECK(contains(page, "2 of 2 runs ended well. Results of 1 run may be wrong: there are warnings."));
+    CHECK(contains(page, "runs/b: too steep"));
+    CHECK_FALSE(is_good(page));
+  }
+  SECTION("interrupted stability") {
+    const std::string page = page_of_result(
+        folder, "stability.json",
+        R"("status": "interrupted", "passed": false, "limits": [{"agrees": true}, {"agrees": true}], "corners": [])");
+    CHECK(contains(
+        page, "2 of 2 limits passed so far, and 0 stress cases were tried. It was interrupted, and is not finished."));
+    CHECK_FALSE(contains(page, "Stability failed"));
+    CHECK_FALSE(is_good(page));
+  }
+}
+
+TEST_CASE("the page of a sweep has all values in its command") {
+  const Folder folder;
+  REQUIRE(delf_program(folder, "compare kink --run.until=1 --lattice.courant=0.25,0.5 --output.figures=off --out here")
+              .code == 0);
+  REQUIRE(delf_program(folder, "report here").code == 0);
+  const std::string page = read(folder / "here/report.html");
+  CHECK(contains(page, "delf compare SCENE --lattice.courant=0.25,0.5"));
+  CHECK(contains(page, "SCENE is the scene that the runs were made of"));
+}
+
+TEST_CASE("a page goes through a link, and into a pipe") {
+  const Folder folder;
+  fs::create_directory(folder / "here");
+  folder.write("here/scene.ini", "[theory]\nname = sine-gordon\n");
+  folder.write("kept.html", "old");
+  fs::create_symlink("kept.html", folder / "link.html");
+  REQUIRE(delf_program(folder, "report here --out link.html").code == 0);
+  CHECK(fs::is_symlink(folder / "link.html"));
+  CHECK(contains(read(folder / "kept.html"), "</html>"));
+  CHECK(shell(folder, "mkfifo pipe && (cat pipe > piped.html & '" + program_path() + "' report here --out pipe; wait)")
+            .code == 0);
+  CHECK(fs::is_fifo(folder / "pipe"));
+  CHECK(contains(read(folder / "piped.html"), "</html>"));
+}
+
+TEST_CASE("files of other programs are no results") {
+  const Folder folder;
+  fs::create_directory(folder / "here");
+  folder.write("here/series.csv", "a,b\n1,2\n3,4\n");
+  CHECK(delf_program(folder, "report here").code == 2);
+  folder.write("here/summary.json", "{\"status\": \"ok\"}");
+  folder.write("here/verify.json", "{\"passed\": true}");
+  CHECK(delf_program(folder, "report here").code == 2);
+  folder.write("here/scene.ini", "[theory]\nname = sine-gordon\n");
+  REQUIRE(delf_program(folder, "report here").code == 0);
+  const std::string page = read(folder / "here/report.html");
+  CHECK(contains(page, "There are no results here yet, but only a scene."));
+  CHECK(contains(page, "verify.json is of another program, and is not used."));
+  CHECK_FALSE(is_good(page));
 }
 
 TEST_CASE("several folders are shown side by side, with the keys that differ") {
