@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <unordered_map>
 
 #include "lattice/index.hpp"
+#include "lattice/space/united_points.hpp"
 
 namespace delf {
 namespace {
@@ -78,34 +78,12 @@ std::optional<std::pair<std::size_t, std::size_t>> coincident_points(const Mesh&
 }
 
 Mesh merged(const Mesh& mesh, double near) {
-  std::vector<std::size_t> first(mesh.points.size());  // of the points that are one
-  std::iota(first.begin(), first.end(), std::size_t{0});
-  const auto root = [&](std::size_t p) {
-    while (first[p] != p) p = first[p] = first[first[p]];
-    return p;
-  };
+  UnitedPoints united(mesh.points.size());
   each_close_pair(mesh.points, near, [&](std::size_t p, std::size_t q) {
-    const auto [low, high] = std::minmax({root(p), root(q)});
-    first[high] = low;
+    united.unite(p, q);
     return true;
   });
-  Mesh one{.dimension = mesh.dimension,
-           .points = {},
-           .vertices = {},
-           .cell_lines = mesh.cell_lines,
-           .cell_tags = mesh.cell_tags};
-  one.first = mesh.first;
-  std::vector<std::int32_t> number(mesh.points.size());
-  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-    if (const std::size_t r = root(p); r != p) {
-      number[p] = number[r];
-      continue;
-    }
-    number[p] = static_cast<std::int32_t>(one.points.size());
-    one.points.push_back(mesh.points[p]);
-    if (p < mesh.point_lines.size()) one.point_lines.push_back(mesh.point_lines[p]);
-    one.point_tags.push_back(mesh.point_number(p));
-  }
+  auto [one, number] = MeshOfFirstPoints(mesh, united);
   for (const auto p : mesh.vertices)  // a number that is of no point is of none still
     one.vertices.push_back(p >= 0 && at(p) < number.size() ? number[p] : p);
   one.parts = mesh.parts;

@@ -2,7 +2,6 @@
 #include "lattice/space/joined_mesh.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -10,6 +9,7 @@
 #include "lattice/index.hpp"
 #include "lattice/space/coincident_points.hpp"
 #include "lattice/space/point_vectors.hpp"
+#include "lattice/space/united_points.hpp"
 
 namespace delf {
 namespace {
@@ -90,40 +90,17 @@ std::vector<std::int32_t> partners(const Mesh& mesh, const JoinedParts& pair) {
 
 Mesh joined(const Mesh& mesh, std::span<const JoinedParts> pairs) {
   if (pairs.empty()) return mesh;
-  std::vector<std::size_t> first(mesh.points.size());  // of the points that are one
-  std::iota(first.begin(), first.end(), std::size_t{0});
-  const auto root = [&](std::size_t p) {
-    while (first[p] != p) p = first[p] = first[first[p]];
-    return p;
-  };
+  UnitedPoints united(mesh.points.size());
   std::set<std::array<std::int32_t, 2>> inside;
   for (const JoinedParts& pair : pairs) {
     const std::vector<std::int32_t> partner = partners(mesh, pair);
     for (std::size_t p = 0; p < partner.size(); ++p)
-      if (partner[p] >= 0) {
-        const auto [low, high] = std::minmax({root(p), root(at(partner[p]))});
-        first[high] = low;
-      }
+      if (partner[p] >= 0) united.unite(p, at(partner[p]));
     for (const std::string& name : {pair.part, pair.with})
       for (const auto& [a, b] : part_of(mesh, pair, name).sides) inside.insert({std::min(a, b), std::max(a, b)});
   }
-  Mesh one{.dimension = mesh.dimension,
-           .points = {},
-           .vertices = {},
-           .cell_lines = mesh.cell_lines,
-           .cell_tags = mesh.cell_tags};
-  one.first = mesh.first;
-  std::vector<std::int32_t> number(mesh.points.size());
-  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-    if (const std::size_t r = root(p); r != p) {
-      number[p] = number[r];
-      continue;
-    }
-    number[p] = static_cast<std::int32_t>(one.points.size());
-    one.points.push_back(mesh.points[p]);
-    if (p < mesh.point_lines.size()) one.point_lines.push_back(mesh.point_lines[p]);
-    if (!mesh.point_tags.empty()) one.point_tags.push_back(mesh.point_number(p));
-  }
+  auto [one, number] = MeshOfFirstPoints(mesh, united);
+  if (mesh.point_tags.empty()) one.point_tags.clear();
   for (const auto p : mesh.vertices) one.vertices.push_back(number[at(p)]), one.places.push_back(mesh.points[at(p)]);
   const auto outer = boundary_sides(mesh);
   for (const Mesh::Part& part : mesh.parts) {
