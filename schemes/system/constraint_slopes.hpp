@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,13 @@
 #include "schemes/families/stencil_family.hpp"
 
 namespace delf {
+
+/// Σ_a |∂G/∂φ_a φ_a|: the terms of G, which cancel within one site, and what G is small against.
+inline double constraint_terms(std::span<const double> slopes, std::span<const double> fields) {
+  double terms = 0;
+  for (std::size_t a = 0; a < slopes.size(); ++a) terms += std::abs(slopes[a] * fields[a]);
+  return terms;
+}
 
 /// G_m(φ) and ∂G_m/∂φ of a family L = Σ_m λ_m G_m(φ) on the values of one site: with λ_m = 1 and the others 0 they are its
 /// residuals, by λ_m and by φ.

@@ -15,6 +15,7 @@
 #include "lattice/index.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/complex/cell_space.hpp"
+#include "schemes/system/constraint_slopes.hpp"
 #include "tools/scene/keys.hpp"
 
 namespace delf {
@@ -177,9 +178,7 @@ MeshBoundary::MeshBoundary(const Settings& settings, const Mesh& mesh, bool othe
 
 bool keeps_constraint(double G, std::span<const double> slopes, std::span<const double> fields) {
   constexpr double rounding = 1e-12;
-  double terms = 0;
-  for (std::size_t a = 0; a < slopes.size(); ++a) terms += std::abs(slopes[a] * fields[a]);
-  return std::abs(G) <= rounding * std::max(1.0, terms);
+  return std::abs(G) <= rounding * std::max(1.0, constraint_terms(slopes, fields));
 }
 
 void MeshBoundary::put_on(MeshSpace& space) const {

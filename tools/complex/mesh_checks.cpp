@@ -11,6 +11,7 @@
 #include "jets/expressions/expression.hpp"
 #include "lattice/index.hpp"
 #include "lattice/region_shapes.hpp"
+#include "schemes/system/constraint_slopes.hpp"
 #include "schemes/verify/equation_check.hpp"
 #include "schemes/verify/wrong_sign.hpp"
 #include "tools/verify/verify_request.hpp"
@@ -149,8 +150,7 @@ void MeshChecks::look_at_constraint(std::span<const double> fields, const std::s
   if (!scene_.theory->constraint()) return;
   const auto d = scene_.fields.size();
   scene_.space->each_constraint(fields, [&](std::size_t n, double G, std::span<const double> slopes) {
-    Balance balance{G, 0, 1};
-    for (std::size_t a = 0; a < d; ++a) balance.absolute += std::abs(slopes[a] * fields[n * d + a]);
+    const Balance balance{G, constraint_terms(slopes, fields.subspan(n * d, d)), 1};
     const std::size_t sites = scene_.space->mesh.points.size();
     if (constraint_.take(balance, fmt::format("point {}, {}", n % sites, where)) && !constraint_.passed())
       constraint_.failure = "the fields leave the surface of the constraint at " + constraint_.region;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "schemes/system/constraint_slopes.hpp"
+
 namespace delf {
 namespace {
 
@@ -58,9 +60,7 @@ std::vector<std::string> warnings_of_rows(const ComplexScene& c, const Outcome& 
     double most = 0;
     const std::size_t d = c.fields.size();
     c.space->each_constraint(last_row, [&](std::size_t i, double, std::span<const double> slopes) {
-      double terms = 0;
-      for (std::size_t a = 0; a < d; ++a) terms += std::abs(slopes[a] * last_row[i * d + a]);
-      most = std::max(most, terms);
+      most = std::max(most, constraint_terms(slopes, last_row.subspan(i * d, d)));
     });
     found.push_back(off_constraint(o.constraint_max, most, c.scene.problem.tolerance));
   }

@@ -109,9 +109,7 @@ void require_constraints_at_ends(const Scene& scene, const FieldTheory& theory) 
     for (std::size_t m = 0; m < G.constraints() && !fields.empty(); ++m) {
       const double value = G.at(m, fields);
       constexpr double small = 1e-8;
-      double size = 0;
-      for (std::size_t a = 0; a < fields.size(); ++a) size += std::abs(G.slopes()[a] * fields[a]);
-      if (!(std::abs(value) <= small * std::max(size, 1.0)))
+      if (!(std::abs(value) <= small * std::max(constraint_terms(G.slopes(), fields), 1.0)))
         throw scene.settings.error(
             key, fmt::format("breaks the constraint{}: it is {:.6g} at t = 0, and not 0; give formulas that keep it",
                              G.constraints() > 1 ? fmt::format(" {}", m + 1) : "", value));
@@ -130,9 +128,7 @@ void require_constraints(const Scene& scene, const FieldTheory& theory, const st
     for (std::size_t m = 0; m < G.constraints(); ++m) {
       const auto fields = std::span(row).subspan(i * d, d);
       const double value = G.at(m, fields);
-      double size = 0;
-      for (std::size_t a = 0; a < d; ++a) size += std::abs(G.slopes()[a] * fields[a]);
-      if (std::abs(value) <= small * std::max(size, 1e-300)) continue;
+      if (std::abs(value) <= small * std::max(constraint_terms(G.slopes(), fields), 1e-300)) continue;
       const char* key = scene.from_file()                  ? "initial.file"
                         : scene.settings.find("initial.q") ? "initial.q"
                                                            : "initial.state";

@@ -166,7 +166,7 @@ std::vector<std::string> Warnings::of(const Outcome& outcome, const Trace& energ
   return all;
 }
 
-/// Driven ends have no equation: their formulas are looked at themselves.
+/// Driven ends have no equation: their formulas are checked themselves.
 Found Warnings::driven_off_constraint(const Outcome& outcome) const {
   const FieldTheory& theory = simulation_.theory();
   const auto constraint = theory.constraint();
@@ -181,9 +181,7 @@ Found Warnings::driven_off_constraint(const Outcome& outcome) const {
       for (const FormulaOfTime& of : motion) fields.push_back(of(outcome.time * n / times));
       for (std::size_t m = 0; m < G.constraints(); ++m) {
         most = std::max(most, std::abs(G.at(m, fields)));
-        double sum = 0;
-        for (std::size_t a = 0; a < fields.size(); ++a) sum += std::abs(G.slopes()[a] * fields[a]);
-        terms = std::max(terms, sum);
+        terms = std::max(terms, constraint_terms(G.slopes(), fields));
       }
     }
   }
