@@ -43,7 +43,7 @@ struct FormulaOfTime {
 using FormulasOfTime = std::vector<FormulaOfTime>;
 
 /// A wall whose value is data for all times: φ_a(t) = f_a(t). The stencil is its site, of which it says the value and varies
-/// nothing: as a fixed wall it has no equation. Steppers put the value into a row before they solve it (set_driven_ends). Nodes
+/// nothing: as a fixed wall it has no equation. Steppers put the value into a row before they solve it (DrivenValues). Nodes
 /// inside a step have the value at their time; in broken elements that of the polynomial through f at the points of Lobatto's
 /// rule, so that both ends of a step are joined there too.
 class DrivenEnd final : public StencilFamily {

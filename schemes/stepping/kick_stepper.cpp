@@ -19,7 +19,7 @@
 #include "lattice/index.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
-#include "schemes/system/driven_points.hpp"
+#include "schemes/system/driven_values.hpp"
 #include "schemes/system/momenta.hpp"
 
 namespace delf {

@@ -12,7 +12,7 @@
 #include "schemes/solvers/newton.hpp"
 #include "schemes/solvers/sparse_lu.hpp"
 #include "schemes/stepping/slab_solver.hpp"
-#include "schemes/system/end_work.hpp"
+#include "schemes/system/driven_values.hpp"
 
 namespace delf {
 namespace {
@@ -389,16 +389,16 @@ NewtonResult solve_centred_start(const LatticeSystem& system, const SolvePlan& p
   for (const Node& unknown : std::vector<Node>(parts.unknowns))
     parts.unknowns.push_back({unknown.site - Site{2, 0}, unknown.component});
   parts.copies = 2;
-  const DrivenEnds ends = driven_ends(system);
+  const DrivenValues driven(system);
   SlabProblem problem(system, std::move(parts), 1, [&](double s, const Vector& y1, SectionRing& ring) {
     Eigen::Map<Vector>(ring.row(-1), y1.size()) = y1 - 2 * s * h * phi_t;
     std::copy(y0.begin(), y0.end(), ring.row(0));
     std::copy(y1.begin(), y1.end(), ring.row(1));
-    for (const int row : {-1, 1}) set_driven_ends(system, ends, row, {ring.row(row), delf::at(y1.size())});
+    for (const int row : {-1, 1}) driven.put_into(row, {ring.row(row), delf::at(y1.size())});
   });
   const auto predict = [&](double s) {
     Vector y1 = problem.moved(y0, s * h * phi_t);
-    set_driven_ends(system, ends, 1, {y1.data(), delf::at(y1.size())});
+    driven.put_into(1, {y1.data(), delf::at(y1.size())});
     return y1;
   };
   const double absolute = tolerance * std::max(largest(y0), largest(predict(1)));

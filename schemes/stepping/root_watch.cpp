@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "lattice/index.hpp"
-#include "schemes/system/driven_points.hpp"
-#include "schemes/system/end_work.hpp"
+#include "schemes/system/driven_values.hpp"
 
 namespace delf {
 namespace {
@@ -28,16 +27,14 @@ void raise(double& largest, double by) { largest = std::max(largest, std::abs(by
 }  // namespace
 
 RootWatch::RootWatch(const LatticeSystem& system)
-    : system_(system), fields_(delf::at(system.fields())), has_flux_(has_flux(system) || has_flux_of_mesh(system)) {
+    : system_(system),
+      driven_(DrivenValues(system).places_of_fields()),
+      fields_(delf::at(system.fields())),
+      has_flux_(has_flux(system)) {
   for (const Component& c : system.all_components()) {
     field_.push_back(delf::at(c.field));
     moves_.push_back(c.role == Role::field || c.position);
   }
-  driven_ = places_of_driven_points(system);
-  for (const auto& [column, end] : driven_ends(system))
-    for (int c = 0; c < system.components(); ++c)
-      if (system.component(c).role == Role::field && system.is_held(column, c))
-        driven_.push_back(column * system.components() + c);
 }
 
 Stop RootWatch::judge(const NewtonProgress& at, const SectionRing& ring, std::int64_t J, std::int64_t solved,

@@ -47,9 +47,9 @@ class RootWatch {
  private:
   using Maxima = std::array<double, most_rows + 1>;
   struct Field {
-    double way, aside;       ///< |∇y_n|, |∇²y_{n+1}|
-    double size;             ///< |y_n|
-    Maxima leaves, differ;   ///< by order p: |∇ᵖ y_{n+1}|, and what predictors differ by
+    double way, aside;      ///< |∇y_n|, |∇²y_{n+1}|
+    double size;            ///< |y_n|
+    Maxima leaves, differ;  ///< by order p: |∇ᵖ y_{n+1}|, and what predictors differ by
   };
   Stop judge(const SectionRing&, std::int64_t J, std::int64_t solved, std::span<const Values>);
   int rows(const Values& list, std::int64_t J, std::int64_t solved) const;
@@ -57,7 +57,7 @@ class RootWatch {
   const LatticeSystem& system_;
   std::vector<std::size_t> field_;  ///< of each component
   std::vector<char> moves_;         ///< components that are fields or positions of sites
-  std::vector<int> driven_;         ///< places of the values that driven ends set
+  std::vector<int> driven_;         ///< places of the fields that are driven
   std::vector<Field> fields_;
   bool has_flux_;
 };

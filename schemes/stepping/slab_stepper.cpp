@@ -20,7 +20,6 @@
 #include "schemes/stepping/gauge.hpp"
 #include "schemes/stepping/newton.hpp"
 #include "schemes/stepping/saved_state.hpp"
-#include "schemes/system/driven_points.hpp"
 #include "schemes/system/slab_extent.hpp"
 
 namespace delf {
@@ -34,7 +33,7 @@ constexpr int most_points = 8, least_points = 4;
 
 SlabStepper::SlabStepper(const LatticeSystem& system, const SolvePlan& plan, const StepOptions& options)
     : system_(system),
-      driven_ends_(driven_ends(system)),
+      driven_(system),
       plan_(with_gauge(system, plan)),
       options_(options),
       components_(system.components()),
@@ -188,10 +187,7 @@ void SlabStepper::start(const std::vector<std::vector<double>>& rows) {
                                                  "which the positions grow",
                                                  *i, *i + 1, r));
     std::ranges::copy(rows[r], ring_->row(static_cast<std::int64_t>(r)));
-    set_driven_ends(system_, driven_ends_, static_cast<std::int64_t>(r),
-                    {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
-    set_driven_points(system_, static_cast<std::int64_t>(r),
-                      {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
+    driven_.put_into(static_cast<std::int64_t>(r), {ring_->row(static_cast<std::int64_t>(r)), rows[r].size()});
     std::fill_n(ring_->low(static_cast<std::int64_t>(r)), rows[r].size(), 0.0);
     largest_[1] = std::exchange(largest_[0], largest_of(rows[r].data()));
   }
@@ -223,7 +219,7 @@ void SlabStepper::start_centred(const std::vector<double>& row0, const std::vect
     if (c.role != Role::field || starting_rows_ != 2) return StepMethod::start_centred(row0, velocity);
   }
   std::vector<double> driven = row0;
-  set_driven_ends(system_, driven_ends_, 0, driven);
+  driven_.put_into(0, driven);
   const Window first = system_.window(0, {driven}, options_.monodromy);
   const NewtonResult result =
       solve_centred_start(system_, plan_, first, velocity, false, options_.tolerance, options_.max_iterations);
@@ -276,10 +272,8 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
   const std::size_t size = predicted_.size();
   std::copy_n(ring_->row(J + future_ - 1), size, ring_->row(J + future_));
   std::copy_n(ring_->low(J + future_ - 1), size, ring_->low(J + future_));
-  for (std::int64_t row = std::max<std::int64_t>(J - 1, 0); row <= J + future_; ++row) {
-    set_driven_ends(system_, driven_ends_, row, {ring_->row(row), size});
-    set_driven_points(system_, row, {ring_->row(row), size});
-  }
+  for (std::int64_t row = std::max<std::int64_t>(J - 1, 0); row <= J + future_; ++row)
+    driven_.put_into(row, {ring_->row(row), size});
   for (const Unknowns& unknowns : p.unknowns) {
     for (const int place : unknowns.places) ring_->low(J + unknowns.time)[place] = 0;
     // Starting rows hold the fields; multipliers and inner nodes are known from the slabs that were solved.

@@ -11,7 +11,7 @@
 #include "schemes/stepping/root_watch.hpp"
 #include "schemes/stepping/slab_solver.hpp"
 #include "schemes/stepping/step_method.hpp"
-#include "schemes/system/end_work.hpp"
+#include "schemes/system/driven_values.hpp"
 
 namespace delf {
 
@@ -116,8 +116,8 @@ class SlabStepper final : public StepMethod {
       residual_bytes_to_come() const;
 
   const LatticeSystem& system_;
-  const DrivenEnds driven_ends_;  ///< listed once: steps look at no family for them
-  const SolvePlan plan_;          ///< with_gauge()
+  const DrivenValues driven_;
+  const SolvePlan plan_;  ///< with_gauge()
   StepOptions options_;
   int components_, past_ = 0, future_ = 0, delay_ = 0, starting_rows_ = 0;
   std::optional<MeshWatch> mesh_;  ///< where it moves

@@ -27,19 +27,6 @@ bool is_given(const LatticeSystem& system, int column, int component, const Driv
   return of_field && c.field < end.size() && system.is_held(column, component);
 }
 
-void set_driven_ends(const LatticeSystem& system, const DrivenEnds& ends, std::int64_t row, std::span<double> y) {
-  const RowTimes& times = *system.times();
-  for (const auto& [column, end] : ends)
-    for (int c = 0; c < system.components(); ++c)
-      if (const Component& component = system.component(c); is_given(system, column, c, *end))
-        y[at(column * system.components() + c)] =
-            end->value(component.field, times.time(row), times.step(row), component.at.time);
-}
-
-bool has_flux(const LatticeSystem& system) {
-  return std::ranges::any_of(system.families(), [](const auto& family) { return family->is_flux(); });
-}
-
 namespace {
 
 /// The density on an element that is tested by other functions, with its own.

@@ -20,11 +20,6 @@ using DrivenEnds = std::vector<std::pair<int, const DrivenEnd*>>;
 DrivenEnds driven_ends(const LatticeSystem&);
 /// True if the end gives the component a value there: a field at a vertex or at a node inside a cell, at its own time.
 bool is_given(const LatticeSystem&, int column, int component, const DrivenEnd&);
-/// Gives them their values in a row, y[i·C + c].
-void set_driven_ends(const LatticeSystem&, const DrivenEnds&, std::int64_t row, std::span<double> y);
-/// Something flows in at a wall.
-bool has_flux(const LatticeSystem&);
-
 /// A flux at a natural wall, as WallFlux has it in the action.
 struct EndFlux {
   int column;
