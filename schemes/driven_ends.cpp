@@ -14,6 +14,7 @@
 #include "jets/tables/table_product.hpp"
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
+#include "lattice/space/mesh_space.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/families/driven_end.hpp"
 #include "schemes/families/lagrangian_family.hpp"
@@ -89,6 +90,11 @@ std::string key_of_driven_end(const Problem& p) {
   for (const char* key : {left_end, right_end, left_flux, right_flux})
     if (!text_of_end(p, key).empty()) return key;
   return {};
+}
+
+bool has_driven_boundary(const Problem& p) {
+  const auto& mesh = p.lattice.mesh();
+  return mesh ? mesh->boundary_works() : !key_of_driven_end(p).empty();
 }
 
 FormulasOfTime motion_of_end(const FieldTheory& theory, const Problem& p, const char* key) {

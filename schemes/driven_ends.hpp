@@ -14,6 +14,8 @@ inline constexpr auto left_end = "boundary.left", right_end = "boundary.right", 
                       right_flux = "boundary.right.flux";
 /// The key of an end that moves, or lets something flow in; empty: all rest.
 std::string key_of_driven_end(const Problem&);
+/// An end of an interval, or the boundary of a mesh, moves or lets something flow in.
+bool has_driven_boundary(const Problem&);
 
 /// The families of these ends. Throws BadInput for those that the scheme cannot have: rows of a kernel are not the field,
 /// coefficients of a basis are not its values, and wide stencils go on by mirror images.

@@ -22,6 +22,9 @@ struct MeshSpace {
   std::vector<AtPoint> driven = {};
   /// What flows in at sites that are free, ∫ f N_i ds over the boundary: the action has Σ_i ∫ f_i·φ_i dt besides.
   std::vector<AtPoint> fluxes = {};
+
+  /// The boundary does work on the fields.
+  bool boundary_works() const { return !(driven.empty() && fluxes.empty()); }
 };
 
 }  // namespace delf

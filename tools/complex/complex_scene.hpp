@@ -58,9 +58,7 @@ struct ComplexScene {
   int coordinates() const;
   std::vector<double> places() const;
   /// Rows have a boundary that is driven, or that something flows in through: energies change by its work.
-  bool boundary_works() const {
-    return space && time == MeshTime::rows && !(space->driven.empty() && space->fluxes.empty());
-  }
+  bool boundary_works() const { return space && time == MeshTime::rows && space->boundary_works(); }
   bool has_solution() const { return fields.front().exact.has_value(); }
   /// φ and φ_t at t = 0, and the solution, if there is one, at any time; [i·d + a].
   std::vector<double> values() const;

@@ -3,20 +3,11 @@
 
 #include <cmath>
 
-#include "lattice/space/mesh_space.hpp"
 #include "schemes/driven_ends.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/in_words.hpp"
 
 namespace delf {
-namespace {
-
-bool has_driven_boundary(const Problem& p) {
-  if (const auto& mesh = p.lattice.mesh()) return !(mesh->driven.empty() && mesh->fluxes.empty());
-  return !key_of_driven_end(p).empty();
-}
-
-}  // namespace
 
 std::string scheme_in_words(const Problem& p) {
   const std::string scheme = scheme_label(p);

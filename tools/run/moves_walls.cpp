@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "lattice/index.hpp"
-#include "lattice/space/mesh_space.hpp"
 #include "schemes/driven_ends.hpp"
 #include "schemes/system/conserved.hpp"
 
@@ -16,9 +15,7 @@ bool moves_walls(const LinearSymmetry& symmetry, std::span<const double> row, co
     if (problem.lattice.is_fixed(static_cast<int>(n / d)) && generator_at(symmetry, n % d, row.data() + n - n % d) != 0)
       return true;
   const auto not_zero = [](double x) { return x != 0; };
-  const bool boundary_works =
-      problem.lattice.mesh() && (!problem.lattice.mesh()->driven.empty() || !problem.lattice.mesh()->fluxes.empty());
-  return (boundary_works || !key_of_driven_end(problem).empty()) &&
+  return has_driven_boundary(problem) &&
          (std::ranges::any_of(symmetry.shift, not_zero) || std::ranges::any_of(symmetry.matrix, not_zero));
 }
 
