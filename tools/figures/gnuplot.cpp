@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,9 +13,8 @@
 #include <thread>
 
 #include "tools/figures/gnuplot_limit.hpp"
+#include "tools/files/started_program.hpp"
 #include "tools/report/failure.hpp"
-
-extern char** environ;
 
 namespace delf {
 
@@ -38,17 +36,12 @@ std::string run_gnuplot(const fs::path& folder, const std::string& script) {
 }
 
 std::string run_gnuplot_within(std::chrono::milliseconds limit, const fs::path& folder, const std::string& script) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "complaints", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  std::string program = "gnuplot", option = "-d", argument = script;  // -d: no start-up files of the user
-  char* arguments[] = {program.data(), option.data(), argument.data(), nullptr};
+  const int complaints_file = open((folder / "complaints").c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (complaints_file < 0) return fmt::format("gnuplot could not be started ({})", std::strerror(errno));
   pid_t child = 0;
-  const int failed = posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
+  // -d: no start-up files of the user
+  const int failed = start_program({"gnuplot", "-d", script}, folder, complaints_file, complaints_file, child);
+  close(complaints_file);
   if (failed == ENOENT || failed == EACCES)
     return "gnuplot is missing: install the package gnuplot-nox (or gnuplot) to have figures";
   if (failed) return fmt::format("gnuplot could not be started ({})", std::strerror(failed));

@@ -2,14 +2,15 @@
 #include "tools/page/sha256.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <sstream>
+#include <utility>
 
-extern char** environ;
+#include "lattice/index.hpp"
+#include "tools/files/started_program.hpp"
 
 namespace delf {
 
@@ -19,23 +20,15 @@ std::map<std::string, std::string> sha256_of(const std::filesystem::path& folder
   if (files.empty() || pipe2(ends, O_CLOEXEC) != 0) return {};
   std::vector<std::string> words{"sha256sum", "--"};
   words.insert(words.end(), files.begin(), files.end());
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   pid_t child = 0;
-  const int failed = posix_spawnp(&child, "sha256sum", &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
+  const int failed = start_program(std::move(words), folder, ends[1], nowhere, child);
+  close(nowhere);
   close(ends[1]);
   std::string text;
   char block[4096];
   for (ssize_t count; !failed && ((count = read(ends[0], block, sizeof block)) > 0 || (count < 0 && errno == EINTR));)
-    if (count > 0) text.append(block, static_cast<std::size_t>(count));
+    if (count > 0) text.append(block, at(count));
   close(ends[0]);
   if (failed) return {};
   while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) continue;
