@@ -28,7 +28,7 @@ FluxDensity::FluxDensity(std::vector<std::shared_ptr<const GivenInTime>> fluxes,
 const GivenInTime& FluxDensity::at_place(const JetBatch& jets, int i) const {
   const double x = fluxes_.size() == 1 || jets.x == nullptr ? 0 : jets.x[i];
   const double last = static_cast<double>(fluxes_.size() - 1);
-  return *fluxes_[static_cast<std::size_t>(std::clamp(std::round(x), 0.0, last))];
+  return *fluxes_[at(std::lround(std::clamp(x, 0.0, last)))];
 }
 
 void FluxDensity::value(const JetBatch& jets, double* l) const {

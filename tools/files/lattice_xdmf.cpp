@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/index.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/files/frames_file.hpp"
 #include "tools/files/text_file.hpp"
@@ -39,7 +40,7 @@ std::string attributes(const Shown& shown, const std::string& dimensions, const 
 
 void write_lattice_xdmf(const std::filesystem::path& folder, const RowNames& names) {
   const FieldsReader reader(folder / "fields.h5");
-  const auto frames = static_cast<std::size_t>(reader.frames()), sites = static_cast<std::size_t>(reader.sites());
+  const auto frames = at(reader.frames()), sites = at(reader.sites());
   std::vector<SharedRows> shared;
   Shown shown;
   for (const auto& [role, data_set] : {std::pair(Role::field, "field"), std::pair(Role::inner, "inner"),
@@ -55,7 +56,8 @@ void write_lattice_xdmf(const std::filesystem::path& folder, const RowNames& nam
     }
   }
   if (names.mesh) shared.push_back({"/mesh", {"places_of_sites"}, false});
-  write_frames_file(folder, shared, frames, sites, {.together = true, .moving = names.mesh ? "/mesh" : "", .copies = {}});
+  write_frames_file(folder, shared, frames, sites,
+                    {.together = true, .moving = names.mesh ? "/mesh" : "", .copies = {}});
 
   const std::string both = fmt::format("{} {}", frames, sites);
   std::string surface = "<Grid Name=\"over x and t\">\n";

@@ -11,6 +11,7 @@
 #include <memory>
 #include <sstream>
 
+#include "lattice/index.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/page/markup.hpp"
 
@@ -36,8 +37,7 @@ std::unique_ptr<FieldsReader> rows_of(const ResultFolder& folder) try {
 std::vector<double> component_of(const FieldsReader& rows, std::size_t frame, std::size_t component) {
   const std::vector<double> row = rows.row(static_cast<int>(frame));
   std::vector<double> values;
-  for (std::size_t i = component; i < row.size(); i += static_cast<std::size_t>(rows.components()))
-    values.push_back(row[i]);
+  for (std::size_t i = component; i < row.size(); i += at(rows.components())) values.push_back(row[i]);
   return values;
 }
 
@@ -81,11 +81,10 @@ std::string range_of(const FieldsReader& rows, std::size_t component, const std:
 /// The ranges of the first components over the run, in sentences.
 std::string ranges_of(const FieldsReader& rows) {
   constexpr std::size_t most_values = 4000000;  // read in a moment
-  const auto values_of_row = static_cast<std::size_t>(rows.sites()) * static_cast<std::size_t>(rows.components());
-  const auto frames =
-      spread(static_cast<std::size_t>(rows.frames()), std::clamp<std::size_t>(most_values / values_of_row, 2, 400));
+  const auto values_of_row = at(rows.sites()) * at(rows.components());
+  const auto frames = spread(at(rows.frames()), std::clamp<std::size_t>(most_values / values_of_row, 2, 400));
   std::string sentences;
-  for (std::size_t c = 0; c < std::min<std::size_t>(4, static_cast<std::size_t>(rows.components())); ++c)
+  for (std::size_t c = 0; c < std::min<std::size_t>(4, at(rows.components())); ++c)
     sentences += range_of(rows, c, frames) + ". ";
   return sentences;
 }
@@ -93,10 +92,10 @@ std::string ranges_of(const FieldsReader& rows) {
 /// Some rows, at some sites, of the first component; sites without one position each have their numbers.
 std::string rows_table(const FieldsReader& rows, const std::optional<std::vector<double>>& x) {
   PageTable t{fmt::format("{} at some {}sites", name_of(rows, 0), rows.frames() > 1 ? "times and " : ""), {"t"}, {}};
-  const std::vector<std::size_t> sites = spread(static_cast<std::size_t>(rows.sites()), 13);
+  const std::vector<std::size_t> sites = spread(at(rows.sites()), 13);
   for (const std::size_t i : sites)
     t.headings.push_back(x ? fmt::format("x = {:.4g}", x->at(i)) : fmt::format("site {}", i));
-  for (const std::size_t frame : spread(static_cast<std::size_t>(rows.frames()), 11)) {
+  for (const std::size_t frame : spread(at(rows.frames()), 11)) {
     const std::vector<double> row = component_of(rows, frame, 0);
     t.rows.push_back({time_of(rows, frame)});
     for (const std::size_t i : sites) t.rows.back().push_back(fmt::format("{:.5g}", row.at(i)));
@@ -108,7 +107,7 @@ std::string rows_table(const FieldsReader& rows, const std::optional<std::vector
 std::optional<std::vector<double>> places_of(const ResultFolder& folder, const FieldsReader& rows, std::size_t frame) {
   const std::vector<std::string> names = rows.names();
   if (const auto X = std::ranges::find(names, "X"); X != names.end())
-    return component_of(rows, frame, static_cast<std::size_t>(X - names.begin()));
+    return component_of(rows, frame, at(X - names.begin()));
   const Json* summary = folder.result("summary");
   return summary && summary->contains("mesh_min_spacing") ? std::nullopt : rows.positions();
 }
@@ -117,10 +116,10 @@ FigureCaption of_rows(const ResultFolder& folder, const std::string& title) {
   FigureCaption caption{title, {}, {}};
   const auto rows = rows_of(folder);
   if (!rows) return caption;
-  const std::size_t last = static_cast<std::size_t>(rows->frames()) - 1;
+  const std::size_t last = at(rows->frames()) - 1;
   caption.finding = ranges_of(*rows);
-  caption.table = rows_table(*rows, places_of(folder, *rows, 0));
   const auto first_places = places_of(folder, *rows, 0), last_places = places_of(folder, *rows, last);
+  caption.table = rows_table(*rows, first_places);
   if (!first_places || !last_places || rows->sites() < 2) return caption;
   if (last == 0) {  // of a problem without time
     caption.finding +=
@@ -138,7 +137,7 @@ FigureCaption of_waveforms(const ResultFolder& folder) {
   FigureCaption caption = of_rows(folder, "The field over space, at some times");
   const auto rows = rows_of(folder);
   if (!rows) return caption;
-  const std::size_t last = static_cast<std::size_t>(rows->frames()) - 1;
+  const std::size_t last = at(rows->frames()) - 1;
   if (last == 0) caption.title = "The field over space";
   else
     caption.finding = fmt::format("At t = {} {}, at t = {} {}.", time_of(*rows, 0), range_of(*rows, 0, {0}),
@@ -152,11 +151,11 @@ FigureCaption of_point(const ResultFolder& folder, const std::string& title) {
   FigureCaption caption{title, {}, {}};
   const auto rows = rows_of(folder);
   if (!rows) return caption;
-  const std::size_t d = std::min<std::size_t>(8, static_cast<std::size_t>(rows->components()));
+  const std::size_t d = std::min<std::size_t>(8, at(rows->components()));
   PageTable t{"Coordinates at some times", {"t"}, {}};
   caption.finding = ranges_of(*rows);
   for (std::size_t c = 0; c < d; ++c) t.headings.push_back(name_of(*rows, c));
-  for (const std::size_t frame : spread(static_cast<std::size_t>(rows->frames()), 21)) {
+  for (const std::size_t frame : spread(at(rows->frames()), 21)) {
     t.rows.push_back({time_of(*rows, frame)});
     for (std::size_t c = 0; c < d; ++c)
       t.rows.back().push_back(fmt::format("{:.6g}", component_of(*rows, frame, c).at(0)));

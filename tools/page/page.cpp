@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <set>
 
 #include "tools/files/text_file.hpp"
@@ -297,6 +298,9 @@ std::string page_with(const std::vector<ResultFolder>& folders, const std::vecto
 
 std::string page_of(const std::vector<fs::path>& paths) {
   const std::vector<ResultFolder> folders(paths.begin(), paths.end());
+  constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+  std::string page = page_with(folders, page_figures(folders, no_limit));
+  if (page.size() <= most_bytes) return page;
   // Figures have the room that the rest of the page leaves.
   const std::size_t rest = page_with(folders, page_figures(folders, 0)).size();
   return page_with(folders, page_figures(folders, most_bytes - std::min(rest, most_bytes)));

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "lattice/index.hpp"
 #include "tools/page/sha256.hpp"
 #include "tools/report/failure.hpp"
 #include "tools/scene/recorded_scene.hpp"
@@ -136,7 +137,7 @@ const Json* ResultFolder::result(const std::string& file) const {
 
 const std::vector<double>* ResultFolder::column(const std::string& column_name) const {
   const auto found = std::ranges::find(series_names, column_name);
-  return found == series_names.end() ? nullptr : &series[static_cast<std::size_t>(found - series_names.begin())];
+  return found == series_names.end() ? nullptr : &series[at(found - series_names.begin())];
 }
 
 bool ResultFolder::has_file(const std::string& file) const {
