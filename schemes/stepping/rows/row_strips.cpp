@@ -49,8 +49,10 @@ RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations,
   const int packs =
       takes_whole_rows ? to_ : std::min(to_, (warm_up > 0 ? 2 * long_strip : longest_strip_) + 2 * delay_);
   if (!sums_are_updates_ || is_long) memory_ = RowBuffer(at(packs) * lanes, d_);
-  can_go_in_place_ = is_long && history == 2 && equations.reads_newest_alone() && options.fibre == Fibre::real &&
-                     (warm_up == 0 || warm_up > equations.reach());
+  // The first update waits for all right sides, or stays far enough behind them.
+  const bool updates_late =
+      (is_long && (warm_up == 0 || warm_up > equations.reach())) || (solver_ == Solver::sweeps && takes_whole_rows);
+  can_go_in_place_ = updates_late && history == 2 && equations.reads_newest_alone() && options.fibre == Fibre::real;
   // A recurrence is not shared out.
   const int parts = std::min(options.threads, to_ / packs_of_a_thread);
   if (solver_ != Solver::number || equations.iterates() || parts < 2) return;
