@@ -167,8 +167,9 @@ void CirculantSolver::solve(double* const* w) const {
 class CirculantSolver::WholeRow final : public Sweeps {
  public:
   explicit WholeRow(const CirculantSolver& solver) : s_(solver), packs_(solver.layout_->packs()) {}
+  int near() const override { return s_.near_; }
   bool takes_whole_rows() const override { return true; }
-  void begin(double*) override { ready_ = 0, last_ = Pack(0.0); }
+  void begin(double*, PackRange) override { ready_ = 0, last_ = Pack(0.0); }
   void forward(double* u, int end) override {
     last_ = s_.run_forward(u, ready_, end, last_);
     close(u, end);
@@ -205,49 +206,53 @@ class CirculantSolver::WholeRow final : public Sweeps {
 /// The second recurrence follows the first one `near` packs behind.
 class CirculantSolver::ByStrips final : public Sweeps {
  public:
-  explicit ByStrips(const CirculantSolver& solver) : s_(solver), packs_(solver.layout_->packs()) {}
-  PackRange warm_up() const override { return {packs_ - s_.near_, packs_}; }
-  /// The last packs: by them the arcs know what enters from the one before.
-  void begin(double* u) override {
-    s_.run_forward(u, packs_ - s_.near_, packs_, Pack(0.0));
-    last_ = s_.layout_->before_first(u);
-    ready_ = done_ = 0;
+  ByStrips(const CirculantSolver& solver, PackRange arc) : s_(solver), arc_(arc) {}
+  int near() const override { return s_.near_; }
+  void begin(double* u, PackRange before) override {
+    last_ = s_.run_forward(u, before.first, before.last, Pack(0.0));
+    if (arc_.first == 0) last_ = s_.layout_->before_first(u);
+    ready_ = done_ = arc_.first;
   }
+  Pack first(const double* u) const override {
+    if (arc_.first == 0) return from_lane_above(s_.sum_of_first(u));
+    return solution_at(u, arc_.first, arc_.first + s_.near_, Pack(0.0));
+  }
+  void end(Pack after) override { ready_ = arc_.last, after_ = after; }
   void forward(double* u, int end) override {
     last_ = s_.run_forward(u, ready_, end, last_);
-    look_back(u, end);
+    ready_ = end;
   }
   void forward(const RowSum& sum, const double* const* rows, double* u, int end) override {
     last_ = s_.run_forward(sum, rows, u, ready_, end, last_);
-    look_back(u, end);
+    ready_ = end;
   }
-  PackRange ready() const override { return {done_, ready_ == packs_ ? packs_ : std::max(done_, ready_ - s_.near_)}; }
+  PackRange ready() const override {
+    return {done_, ready_ == arc_.last ? ready_ : std::max(done_, ready_ - s_.near_)};
+  }
   void backward(const double* u, RowUpdate& update) override {
     const int end = ready().last;
-    Pack x = ready_ == packs_ ? after_ : Pack(0.0);
-    for (int v = ready_ - 1; v >= end; --v) x = Pack::load(u + s_.layout_->at(v)) + s_.q_ * x;
+    const Pack x = solution_at(u, end, ready_, ready_ == arc_.last ? after_ : Pack(0.0));
     s_.run_backward(u, done_, end, x, Pack(0.0), update);
     done_ = end;
   }
 
  private:
-  void look_back(const double* u, int end) {
-    // The arc before needs the first `near` packs of this one.
-    if (ready_ == 0) after_ = from_lane_above(s_.sum_of_first(u));
-    ready_ = end;
+  Pack solution_at(const double* u, int first, int last, Pack x) const {
+    for (int v = last - 1; v >= first; --v) x = Pack::load(u + s_.layout_->at(v)) + s_.q_ * x;
+    return x;
   }
 
   const CirculantSolver& s_;
-  const int packs_;
+  const PackRange arc_;
   int ready_ = 0, done_ = 0;
   Pack last_ = 0.0, after_ = 0.0;
 };
 
 /// Returns sweeps by strips where arcs are long against the range in which their ends are felt.
-std::unique_ptr<Sweeps> CirculantSolver::sweeps(int) const {
+std::unique_ptr<Sweeps> CirculantSolver::sweeps(int, PackRange arc) const {
   constexpr int long_row = 4096;
   if (layout_->packs() >= long_row && layout_->packs() >= 8 * near_ && layout_->finds_halos_by_packs())
-    return std::make_unique<ByStrips>(*this);
+    return std::make_unique<ByStrips>(*this, arc);
   return std::make_unique<WholeRow>(*this);
 }
 

@@ -17,12 +17,12 @@ namespace delf {
 /// Every lane runs both recurrences along its own arc, starting from nothing. What enters an arc from the one before it
 /// then adds q^(i+1) U to u_i, and the sums of these corrections close round the circle: they are found from the ends of
 /// all arcs. Where arcs are long against the decay of q^i, strips are solved one after the other: the first recurrence
-/// starts `near` packs before the row, the second one `near` packs beyond each strip.
+/// starts `near` packs before the strips, the second one `near` packs beyond each of them.
 class CirculantSolver final : public LinearSolver {
  public:
   CirculantSolver(const RowLayout&, double centre, double side);
   void solve(double* const* w) const override;
-  std::unique_ptr<Sweeps> sweeps(int) const override;
+  std::unique_ptr<Sweeps> sweeps(int, PackRange arc) const override;
   double right_side_scale(int) const override { return scale_; }
   std::size_t bytes() const override { return forward_.size() * sizeof(double) + backward_.bytes(); }
   std::string name() const override { return "two recurrences (symmetric circulant of width 1)"; }

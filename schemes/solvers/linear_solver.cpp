@@ -44,35 +44,14 @@ class DiagonalSolver final : public LinearSolver {
 /// Division by one number: by the right side's scale.
 class ScalarSolver final : public LinearSolver {
  public:
-  ScalarSolver(const RowLayout& layout, double diagonal) : layout_(&layout), inverse_(1 / diagonal) {}
+  explicit ScalarSolver(double diagonal) : inverse_(1 / diagonal) {}
   void solve(double* const*) const override {}
-  std::unique_ptr<Sweeps> sweeps(int) const override { return std::make_unique<Through>(*layout_); }
   bool is_a_number() const override { return true; }
   double right_side_scale(int) const override { return inverse_; }
   std::size_t bytes() const override { return 0; }
   std::string name() const override { return "division by one number"; }
 
  private:
-  class Through final : public Sweeps {
-   public:
-    explicit Through(const RowLayout& layout) : layout_(layout) {}
-    void begin(double*) override { done_ = ready_ = 0; }
-    void forward(double*, int end) override { ready_ = end; }
-    void forward(const RowSum& sum, const double* const* rows, double* w, int end) override {
-      sum.evaluate(rows, layout_.at(ready_), layout_.at(end), lanes, w);
-      ready_ = end;
-    }
-    PackRange ready() const override { return {done_, ready_}; }
-    void backward(const double* w, RowUpdate& update) override {
-      for (std::ptrdiff_t at = layout_.at(done_); at < layout_.at(ready_); at += lanes) update(at, Pack::load(w + at));
-      done_ = ready_;
-    }
-
-   private:
-    const RowLayout& layout_;
-    int done_ = 0, ready_ = 0;
-  };
-  const RowLayout* layout_;
   double inverse_;
 };
 
@@ -130,7 +109,10 @@ class ByComponent final : public LinearSolver {
   void solve(double* const* w) const override {
     for (std::size_t a = 0; a < solvers_.size(); ++a) solvers_[a]->solve(w + a);
   }
-  std::unique_ptr<Sweeps> sweeps(int a) const override { return solvers_[a]->sweeps(0); }
+  std::unique_ptr<Sweeps> sweeps(int a, PackRange arc) const override { return solvers_[a]->sweeps(0, arc); }
+  bool is_a_number() const override {
+    return std::ranges::all_of(solvers_, [](const auto& solver) { return solver->is_a_number(); });
+  }
   double right_side_scale(int a) const override { return solvers_[a]->right_side_scale(0); }
   std::size_t bytes() const override {
     std::size_t total = 0;
@@ -183,7 +165,7 @@ std::unique_ptr<LinearSolver> factor_uniform(const Lattice& lattice, const RowLa
     reach = std::max(reach, std::abs(e.offset));
     (e.offset == 0 ? centre : e.offset < 0 ? left : right) += e.value;
   }
-  if (reach == 0 && centre != 0) return std::make_unique<ScalarSolver>(layout, centre);
+  if (reach == 0 && centre != 0) return std::make_unique<ScalarSolver>(centre);
   const bool symmetric = std::abs(left - right) <= 1e-14 * std::abs(centre);
   // Two arcs must not start at the same site, and each recurrence must decay.
   if (reach == 1 && symmetric && lattice.sites() >= 2 * lanes && std::abs(centre) > 2 * std::abs(left) * (1 + 1e-12))

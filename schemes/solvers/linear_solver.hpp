@@ -13,17 +13,22 @@
 
 namespace delf {
 
-/// A solve by a sweep to the right and one to the left, strip by strip, so that what makes the right side and what uses
-/// the solution find a strip in the cache. One component; w holds the right side.
+/// A solve by a sweep to the right and one to the left along an arc of packs, strip by strip, so that what makes the right
+/// side and what uses the solution find a strip in the cache. One component; w holds the right side.
 class Sweeps {
  public:
   virtual ~Sweeps() = default;
-  /// Packs whose right side begin() reads, none for most.
-  virtual PackRange warm_up() const { return {0, 0}; }
+  /// Right sides of so many packs before and after the arc are felt in it.
+  virtual int near() const { return 0; }
   /// The first solution needs all right sides.
   virtual bool takes_whole_rows() const { return false; }
-  virtual void begin(double* w) = 0;
-  /// The right side is there for the packs up to `end`; the first call begins at pack 0. With a sum, it is that one.
+  /// Begins the arc with the right sides of the packs `before` it: near() of them, or more.
+  virtual void begin(double* w, PackRange before) = 0;
+  /// The solution at the first pack as the arc before reads it, found from near() packs that are swept forward.
+  virtual Pack first(const double* /*w*/) const { return 0.0; }
+  /// Ends the arc: it is swept forward, and the solution after its last pack is this one.
+  virtual void end(Pack /*after*/) {}
+  /// The right side is there for the packs up to `end`; the first call begins at the arc's. With a sum, it is that one.
   virtual void forward(double* w, int end) = 0;
   virtual void forward(const RowSum& right_side, const double* const* rows, double* w, int end) = 0;
   /// The next packs to solve for: none until more are swept forward. Whatever the order, each comes once.
@@ -40,8 +45,8 @@ class LinearSolver {
   virtual void solve(double* const* w) const = 0;
   virtual double right_side_scale(int /*component*/) const { return 1; }
   /// Null where it cannot be done by sweeps.
-  virtual std::unique_ptr<Sweeps> sweeps(int /*component*/) const { return nullptr; }
-  /// A is one number: w is the right side times right_side_scale().
+  virtual std::unique_ptr<Sweeps> sweeps(int /*component*/, PackRange /*arc*/) const { return nullptr; }
+  /// A is one number for each component: w is the right side times right_side_scale().
   virtual bool is_a_number() const { return false; }
   virtual std::size_t bytes() const = 0;
   virtual std::string name() const = 0;

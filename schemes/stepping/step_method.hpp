@@ -69,6 +69,7 @@ struct StepReport {
   std::vector<int> behind = {};  ///< of each component, rows before the newest that its newest is; none: 0
   bool iterates = true, matrix_free = false;
   bool follows_plan = true;                  ///< false: the plan is that of steps which all sites take together
+  int sites_of_an_arc = 0;                   ///< threads share rows by arcs of so many at least; 0: they do not
   std::string solver = {};                   ///< in words
   const RowLayout* layout = nullptr;         ///< of rows by lanes; null when stepped slab by slab
   std::size_t bytes = 0, bytes_to_come = 0;  ///< allocated now; on top while it steps, and by residual() if asked for

@@ -31,7 +31,7 @@ void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
 
 }  // namespace
 
-ThreadTeam::ThreadTeam(int threads) : begun_(at(threads)) {
+ThreadTeam::ThreadTeam(int threads, int most_parts) : begun_(at(std::max(threads, most_parts))) {
   for (int which = 1; which < threads; ++which) workers_.emplace_back([this, which] { work(which); });
 }
 
@@ -54,15 +54,16 @@ void ThreadTeam::run(int parts, const std::function<void(int)>& part) {
   round_.notify_all();
   part(0);
   unfinished_.fetch_sub(1, std::memory_order_acq_rel);
-  do_parts(1, round);
+  do_parts(0, round);
   for (std::uint32_t left; (left = unfinished_.load(std::memory_order_acquire)) != 0;) await_change(unfinished_, left);
 }
 
-void ThreadTeam::do_parts(int first, std::uint32_t round) {
-  for (int n = 0; n < size(); ++n) {
-    const int which = (first + n) % size();
-    if (!begin(which, round)) continue;
-    (*part_)(which);
+void ThreadTeam::do_parts(int which, std::uint32_t round) {
+  const int most = static_cast<int>(begun_.size());
+  for (int n = 0; n < most; ++n) {
+    const int part = (which * most / size() + n) % most;
+    if (!begin(part, round)) continue;
+    (*part_)(part);
     if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_all();
   }
 }

@@ -21,13 +21,6 @@ namespace delf {
 
 namespace {
 
-// True if threads share the strips of a step: explicit ones, whose matrix is one number.
-bool is_shared(const Simulation& simulation) {
-  const Stepper& stepper = simulation.evolution().stepper();
-  const LatticeSystem& system = simulation.evolution().system();
-  return stepper.layout() && !stepper.iterates() && stepper.matrix_free() && system.lattice().is_circle();
-}
-
 constexpr auto momentum_dataset = "momentum";
 
 // Momenta that no method records are half of an equation: at row 0 of the stencils above it, which must hold no more than
@@ -105,12 +98,14 @@ FieldError error_of(const RecordedRow& row, const RowNames& names, const State& 
 }  // namespace
 
 std::string threads_in_words(const Simulation& simulation, int asked) {
-  constexpr int packs_for_each = 1024;  // as RowStepper shares them
   if (asked == 1) return {};
-  if (!is_shared(simulation)) return fmt::format("1 of {}: only explicit steps are shared", asked);
-  const int used = std::clamp(simulation.evolution().stepper().layout()->packs() / packs_for_each, 1, asked);
+  const int sites = simulation.evolution().system().lattice().sites();
+  const int each = simulation.evolution().stepper().report(false).sites_of_an_arc;
+  if (each == 0)
+    return fmt::format("1 of {}: only rows on a circle, solved by a number or two recurrences, are shared", asked);
+  const int used = std::clamp(sites / each / 2 * 2, 1, asked);
   if (used == asked) return fmt::to_string(asked);
-  return fmt::format("{} of {}: each takes {} sites or more", used, asked, packs_for_each * lanes);
+  return fmt::format("{} of {}: each takes {} sites or more", used, asked, each);
 }
 
 Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,

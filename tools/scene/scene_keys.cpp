@@ -213,8 +213,8 @@ std::vector<Parameter> scene_keys() {
        .range = {.low = 0, .high = largest_count}},
       {.key = "run.threads",
        .fallback = 1,
-       .help = "threads that long rows of explicit schemes, and wide levels of a finite "
-               "complex, are shared by; the bits are the same for any number",
+       .help = "threads that long rows, and wide levels of a finite complex, are shared by; the "
+               "bits are the same for any number",
        .range = {.low = 1, .high = 1024}},
 
       {.key = "output.every",

@@ -30,6 +30,8 @@ class RowTable {
   double*& operator[](int row) { return rows_[row]; }
   double* operator[](int row) const { return rows_[row]; }
   const double* const* data() const { return rows_.data(); }
+  /// Points at the rows of another table, which keeps them.
+  void point_as(const RowTable& other) { rows_ = other.rows_; }
   void reserve(int rows) { rows_.resize(std::max(rows_.size(), at(rows))); }
 
  private:

@@ -411,6 +411,7 @@ StepReport RowStepper::report(bool residual) const {
       .starting_rows = s.history,
       .iterates = s.equations.iterates(),
       .matrix_free = matrix == 0,
+      .sites_of_an_arc = s.rows.packs_of_an_arc() * lanes,
       .solver = s.equations.solver(0).name(),
       .layout = &s.layout,
       .bytes = rows + sources + matrix + work,

@@ -13,7 +13,9 @@ namespace {
 
 // Strips that stay in the first level of the cache; in the second one where a solve follows a recurrence strip by strip.
 constexpr int short_strip = 64, medium_strip = 256, long_strip = 1024;
-constexpr int packs_of_a_thread = 1024, packs_beyond_cache = 4096;
+constexpr int packs_beyond_cache = 4096;
+// Arcs are as many for any number of threads, and long against their joints, whose packs are swept forward twice.
+constexpr int most_arcs = 32, shortest_arc = 1024, shortest_arc_of_sweeps = 4096, arc_over_joint = 16;
 constexpr std::size_t most_outputs = 32;
 
 using Pointers = std::array<double*, most_outputs>;
@@ -32,9 +34,7 @@ RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations,
       to_(layout.packs()),
       w_(at(d_)) {
   choose_solver();
-  const int warm_up = sweeps_.empty() ? 0 : sweeps_[0]->warm_up().last - sweeps_[0]->warm_up().first;
-  lay_out_strips(warm_up);
-  delay_ = std::max(warm_up, equations.reach());
+  const bool is_long = solver_ != Solver::whole_rows && !takes_whole_rows() && to_ > packs_beyond_cache;
   for (const SourceRow& source : equations.sources()) {
     has_local_ = has_local_ || source.is_local;
     if (!source.reads_unknown) continue;
@@ -43,23 +43,25 @@ RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations,
     ahead_ = std::max(ahead_, source.highest);
   }
   sums_are_updates_ = solver_ == Solver::number && equations.right_side(0, Solving::step);
-  const bool takes_whole_rows =
-      solver_ == Solver::whole_rows || (solver_ == Solver::sweeps && sweeps_[0]->takes_whole_rows());
-  const bool is_long = !takes_whole_rows && layout.packs() > packs_beyond_cache;
-  const int packs =
-      takes_whole_rows ? to_ : std::min(to_, (warm_up > 0 ? 2 * long_strip : longest_strip_) + 2 * delay_);
-  if (!sums_are_updates_ || is_long) memory_ = RowBuffer(at(packs) * lanes, d_);
   // The first update waits for all right sides, or stays far enough behind them.
+  const int distance = sweeps_.empty() || takes_whole_rows() ? 0 : sweeps_[0]->near();
   const bool updates_late =
-      (is_long && (warm_up == 0 || warm_up > equations.reach())) || (solver_ == Solver::sweeps && takes_whole_rows);
+      is_long ? distance == 0 || distance > equations.reach() : solver_ == Solver::sweeps && takes_whole_rows();
   can_go_in_place_ = updates_late && history == 2 && equations.reads_newest_alone() && options.fibre == Fibre::real;
-  // A recurrence is not shared out.
-  const int parts = std::min(options.threads, to_ / packs_of_a_thread);
-  if (solver_ != Solver::number || equations.iterates() || parts < 2) return;
-  team_.emplace(parts);
-  can_go_in_place_ = false;
-  for (int p = 0; p < parts; ++p)
-    parts_.emplace_back(new RowStrips(*this, layout.first_of_part(p, parts), layout.first_of_part(p + 1, parts)));
+  const int most = solver_ == Solver::whole_rows ? 0 : std::min(most_arcs, to_ / packs_of_an_arc()) / 2 * 2;
+  if (distance > 0 || is_long || (solver_ == Solver::number && options.threads > 1 && most > 1)) {
+    near_ = distance + layout.halo();
+    delay_ = std::max(distance, equations.reach());
+    const int arcs = std::max(1, most);
+    for (int p = 0; p < arcs; ++p)
+      arcs_.emplace_back(new RowStrips(*this, layout.first_of_part(p, arcs), layout.first_of_part(p + 1, arcs)));
+    if (options.threads > 1 && arcs > 1) team_.emplace(std::min(options.threads, arcs), arcs);
+    return;
+  }
+  lay_out_strips(0, to_);
+  if (sums_are_updates_) return;
+  memory_ = RowBuffer(at(to_) * lanes, d_);
+  for (int a = 0; a < d_; ++a) window_.push_back(memory_.row(a));
 }
 
 RowStrips::RowStrips(const RowStrips& whole, int from, int to)
@@ -68,16 +70,27 @@ RowStrips::RowStrips(const RowStrips& whole, int from, int to)
       kept_(whole.kept_),
       d_(whole.d_),
       monodromy_(whole.monodromy_),
-      table_(&own_),
+      table_(whole.has_local_ ? &own_ : whole.table_),
+      of_whole_(whole.table_),
       from_(from),
       to_(to),
       solver_(whole.solver_),
-      sums_are_updates_(whole.sums_are_updates_),
       has_local_(whole.has_local_),
       delay_(whole.delay_),
+      reads_left_(whole.reads_left_),
+      reads_right_(whole.reads_right_),
+      ahead_(whole.ahead_),
+      near_(whole.near_),
+      memory_(at(2 * near_) * lanes, d_),
+      at_joint_{{(from == 0 ? layout_.packs() : from) - near_, from == 0 ? layout_.packs() : from},
+                {from, from + near_}},
+      first_(at(d_), Pack(0.0)),
+      own_corrections_(equations_.sources().size()),
+      window_(at(d_)),
       w_(at(d_)) {
-  if (!sums_are_updates_) memory_ = RowBuffer(at(static_cast<int>(whole.memory_.stride())), d_);
-  lay_out_strips(0);
+  for (std::size_t a = 0; a < whole.sweeps_.size(); ++a)
+    sweeps_.push_back(equations_.solver(0).sweeps(static_cast<int>(a), {from, to}));
+  lay_out_strips(from + near_, to - layout_.halo());
 }
 
 void RowStrips::choose_solver() {
@@ -86,57 +99,65 @@ void RowStrips::choose_solver() {
   if (equations_.has_walls() ||
       std::ranges::any_of(sources, [](const SourceRow& row) { return !row.reads_unknown && !row.is_local; }))
     return;
-  for (int a = 0; a < d_; ++a) sweeps_.push_back(equations_.solver(0).sweeps(a));
+  const LinearSolver& solver = equations_.solver(0);
+  if (solver.is_a_number()) {
+    solver_ = Solver::number;
+    return;
+  }
+  for (int a = 0; a < d_; ++a) sweeps_.push_back(solver.sweeps(a, layout_.all()));
   // Components that advance by other strips would have to wait for each other.
   if (std::ranges::any_of(sweeps_, [this](const auto& one) {
-        return !one || one->warm_up().first != sweeps_[0]->warm_up().first ||
-               one->takes_whole_rows() != sweeps_[0]->takes_whole_rows();
+        return !one || one->near() != sweeps_[0]->near() || one->takes_whole_rows() != sweeps_[0]->takes_whole_rows();
       }))
     return sweeps_.clear();
-  const bool recurs = sweeps_[0]->takes_whole_rows() || sweeps_[0]->warm_up().first < sweeps_[0]->warm_up().last;
-  solver_ = recurs ? Solver::sweeps : Solver::number;
+  solver_ = Solver::sweeps;
 }
 
-/// Recurrences by strips begin with the right sides of the last packs.
-void RowStrips::lay_out_strips(int warm_up) {
+int RowStrips::packs_of_an_arc() const {
+  if (solver_ == Solver::whole_rows) return 0;
+  return sweeps_.empty() ? shortest_arc : std::max(shortest_arc_of_sweeps, arc_over_joint * sweeps_[0]->near());
+}
+
+void RowStrips::lay_out_strips(int from, int to) {
   // Short passes over rows that come from memory wait for it.
-  const int length = solver_ == Solver::whole_rows          ? to_ - from_
-                     : warm_up > 0                          ? long_strip
-                     : layout_.packs() > packs_beyond_cache ? medium_strip
-                                                            : short_strip;
-  if (warm_up > 0) strips_.push_back({to_ - warm_up, to_});
-  for (int begin = from_, end; begin < to_; begin = end) {
-    end = warm_up > 0 && to_ - begin < 2 * length ? to_ : std::min(to_, begin + length);
+  const int length = solver_ == Solver::whole_rows            ? to - from
+                     : solver_ == Solver::sweeps && near_ > 0 ? long_strip
+                     : layout_.packs() > packs_beyond_cache   ? medium_strip
+                                                              : short_strip;
+  for (int begin = from, end; begin < to; begin = end) {
+    end = near_ > 0 && to - begin < 2 * length ? to : std::min(to, begin + length);
     strips_.push_back({begin, end});
+    longest_strip_ = std::max(longest_strip_, end - begin);
   }
-  for (const Strip& strip : strips_) longest_strip_ = std::max(longest_strip_, strip.last - strip.first);
 }
 
 // ---- A pass.
 
-double RowStrips::pass(Solving solving, std::vector<double>* corrections,
-                       const std::function<void(RowOperations&)>& along) {
-  if (!team_) {
+double RowStrips::pass(Solving solving, std::vector<double>* corrections, const Along& along) {
+  begin(solving, corrections);
+  if (solving == Solving::correction) {
+    if (arcs_.empty()) find_corrections();
+    else if (!arcs_[0]->keeps_corrections_) for_each_arc([this](int p) { arcs_[at(p)]->find_corrections(); });
+    for (const SourceRow& source : equations_.sources())
+      if (source.reads_unknown) layout_.fill_halo((*table_)[source.correction]);
+  }
+  if (arcs_.empty()) {
     const ScratchRows local(has_local_ ? static_cast<int>(equations_.sources().size()) : 0, longest_strip_ * lanes);
     local_ = &local;
-    begin(solving, corrections);
+    for (std::size_t a = 0; a < sweeps_.size(); ++a) sweeps_[a]->begin(w_[a], {0, 0});
     along(*this);
   } else {
-    largest_ = 0.0;
-    team_->run(team_->size(), [&](int p) {
-      RowStrips& part = *parts_[p];
-      part.own_ = *table_;
-      part.pass(solving, nullptr, along);
-    });
-    for (const auto& part : parts_) largest_ = larger_size(largest_, part->largest_);
+    for_each_arc([&](int p) { arcs_[at(p)]->make_joint(solving, corrections != nullptr, along); });
+    for_each_arc([&](int p) { arcs_[at(p)]->go_on(*arcs_[at(p + 1) % arcs_.size()], along); });
+    order_ = arcs_[0]->order_;
+    for (const auto& arc : arcs_) {
+      largest_ = larger_size(largest_, arc->largest_);
+      for (std::size_t s = 0; corrections && s < corrections->size(); ++s)
+        (*corrections)[s] = larger_or_nan(arc->own_corrections_[s], (*corrections)[s]);
+    }
   }
-  if (to_ - from_ < layout_.packs()) return 0;
   close();
-  if (corrections) {
-    compare_inside(0, layout_.packs());
-    for (const SourceRow& source : equations_.sources())
-      if (source.reads_unknown) layout_.fill_halo((*table_)[source.ring.row(0)]);
-  }
+  if (corrections) compare_rest();
   return max_or_nan(largest_);
 }
 
@@ -148,31 +169,68 @@ void RowStrips::begin(Solving solving, std::vector<double>* corrections) {
   predicted_ = std::numeric_limits<int>::min();
   made_ = compared_ = {from_, from_};
   largest_ = 0.0;
-  if (solving == Solving::correction) find_corrections();
-  else order_ = 0;
-  warms_up_ = strips_[0].first > from_;
-  move_window(strips_[0].first);
-  if (!warms_up_)
-    for (std::size_t a = 0; a < sweeps_.size(); ++a) sweeps_[a]->begin(w_[a]);
+  if (solving == Solving::step) order_ = 0;
+  if (!arcs_.empty() || window_.empty()) return;
+  move_window(from_);
 }
 
-/// δ with its halos; δ = g′ − g again where the pass of the step has not kept it.
+void RowStrips::for_each_arc(const std::function<void(int)>& part) {
+  const int arcs = static_cast<int>(arcs_.size());
+  if (team_) return team_->run(arcs, part);
+  for (int p = 0; p < arcs; ++p) part(p);
+}
+
+/// Right sides of the packs before the arc and of its first ones, swept forward; and the solution where they meet.
+void RowStrips::make_joint(Solving solving, bool compares, const Along& along) {
+  const ScratchRows local(has_local_ ? static_cast<int>(equations_.sources().size()) : 0, near_ * lanes);
+  local_ = &local;
+  if (has_local_) own_.point_as(*of_whole_);
+  begin(solving, compares ? &own_corrections_ : nullptr);
+  is_at_joint_ = true;
+  std::swap(strips_, at_joint_);
+  along(*this);
+  std::swap(strips_, at_joint_);
+  is_at_joint_ = false;
+}
+void RowStrips::right_side_at_joint(Strip packs) {
+  const bool is_before = packs.first != from_;
+  for (int a = 0; a < d_; ++a) w_[a] = memory_.row(a) + (is_before ? 0 : near_ * lanes) - layout_.at(packs.first);
+  equations_.right_sides(*table_, kept_.newest(), solving_, packs.first, packs.last, w_.data());
+  for (std::size_t a = 0; a < sweeps_.size(); ++a) {
+    if (is_before) sweeps_[a]->begin(w_[a], {packs.first, packs.last});
+    else sweeps_[a]->forward(w_[a], packs.last), first_[a] = sweeps_[a]->first(w_[a]);
+  }
+}
+
+/// The packs between the joints.
+void RowStrips::go_on(const RowStrips& next, const Along& along) {
+  const ScratchRows local(has_local_ ? static_cast<int>(equations_.sources().size()) : 0, longest_strip_ * lanes);
+  const ScratchRows window(d_, (longest_strip_ + near_ + delay_ + layout_.halo()) * lanes);
+  local_ = &local, next_ = &next;
+  for (int a = 0; a < d_; ++a) {
+    window_[a] = window[a];
+    std::memcpy(window[a], memory_.row(a) + near_ * lanes, at(near_ * lanes) * sizeof(double));
+  }
+  move_window(from_);
+  formed_ = from_ + near_;
+  along(*this);
+}
+
+/// δ = g′ − g again, where the pass of the step has not kept it.
 void RowStrips::find_corrections() {
-  const std::ptrdiff_t begin = layout_.at(0), end = layout_.at(layout_.packs());
+  if (keeps_corrections_) return;
+  const std::ptrdiff_t begin = layout_.at(from_), end = layout_.at(to_);
   for (const SourceRow& source : equations_.sources()) {
     if (!source.reads_unknown) continue;
     const double* const g = (*table_)[source.ring.row(0)];
     double* const delta = (*table_)[source.correction];
-    if (!keeps_corrections_) {
-      equations_.prediction(source, order_).evaluate(table_->data(), begin, end, lanes, delta);
-      for (std::ptrdiff_t i = begin; i < end; i += lanes) (Pack::load(g + i) - Pack::load(delta + i)).store(delta + i);
-    }
-    layout_.fill_halo(delta);
+    equations_.prediction(source, order_).evaluate(table_->data(), begin, end, lanes, delta);
+    for (std::ptrdiff_t i = begin; i < end; i += lanes) (Pack::load(g + i) - Pack::load(delta + i)).store(delta + i);
   }
 }
 
 void RowStrips::move_window(int first) {
-  for (int a = 0; a < memory_.rows(); ++a) w_[a] = memory_.row(a) - layout_.at(first);
+  for (int a = 0; a < d_; ++a) w_[a] = window_[a] - layout_.at(first);
 }
 
 /// A group of source terms, into number 0 of their rings, or `back` rows before.
@@ -229,22 +287,15 @@ void RowStrips::predict(int order, Strip packs) {
 }
 
 void RowStrips::right_side(Strip packs) {
-  const RowTable& rows = *table_;
-  const std::int64_t n = kept_.newest();
-  if (warms_up_) {
-    equations_.right_sides(rows, n, solving_, packs.first, packs.last, w_.data());
-    for (std::size_t a = 0; a < sweeps_.size(); ++a) sweeps_[a]->begin(w_[a]);
-    warms_up_ = false;
-    predicted_ = std::numeric_limits<int>::min();
-    return move_window(from_);
-  }
+  if (is_at_joint_) return right_side_at_joint(packs);
   formed_ = packs.last;
   if (updates_from_sums()) return;
+  const RowTable& rows = *table_;
+  const std::int64_t n = kept_.newest();
   // Right sides that are not used yet move to the beginning of the window.
-  if (packs.first > from_ && static_cast<std::ptrdiff_t>(to_ - from_) * lanes > memory_.stride()) {
+  if (next_) {
     for (int a = 0; a < d_; ++a)
-      std::memmove(memory_.row(a), w_[a] + layout_.at(updated_),
-                   at(static_cast<int>(layout_.at(packs.first) - layout_.at(updated_))) * sizeof(double));
+      std::memmove(window_[a], w_[a] + layout_.at(updated_), at(packs.first - updated_) * lanes * sizeof(double));
     move_window(updated_);
   }
   const bool are_sums = solver_ == Solver::sweeps && equations_.right_side(0, solving_);
@@ -254,10 +305,18 @@ void RowStrips::right_side(Strip packs) {
       if (!are_sums) sweeps_[a]->forward(w_[a], packs.last);
       else sweeps_[a]->forward(*equations_.right_side(static_cast<int>(a), solving_), rows.data(), w_[a], packs.last);
     }
+  if (!next_ || packs.last != strips_.back().last) return;
+  // The last packs of an arc are those of the joint with the next one.
+  formed_ = to_;
+  const int last = to_ - packs.last;
+  for (int a = 0; a < d_; ++a)
+    std::memcpy(w_[a] + layout_.at(packs.last), next_->memory_.row(a) + (near_ - last) * lanes,
+                at(last * lanes) * sizeof(double));
+  for (std::size_t a = 0; a < sweeps_.size(); ++a) sweeps_[a]->end(next_->first_[a]);
 }
 
 Strip RowStrips::solve() {
-  if (warms_up_ || formed_ == from_) return {};
+  if (is_at_joint_ || formed_ == from_) return {};
   switch (solver_) {
     case Solver::number:
       // Right sides still to come read rows this far back.
@@ -327,6 +386,16 @@ void RowStrips::compare(Strip packs) {
   compare_inside(made_.first - reads_left_, made_.last - reads_right_);
 }
 
+/// Compares the packs whose neighbours were not all there in their arc.
+void RowStrips::compare_rest() {
+  if (arcs_.empty()) compare_inside(0, to_);
+  int done = 0;
+  for (const auto& arc : arcs_) compare_packs(done, arc->compared_.first), done = arc->compared_.last;
+  if (!arcs_.empty()) compare_packs(done, to_);
+  for (const SourceRow& source : equations_.sources())
+    if (source.reads_unknown) layout_.fill_halo((*table_)[source.ring.row(0)]);
+}
+
 void RowStrips::compare_inside(int from, int to) {
   if (from >= to) return;
   if (compared_.first == compared_.last) compared_ = {from, from};
@@ -393,7 +462,7 @@ void RowStrips::close() const {
 
 std::size_t RowStrips::bytes() const {
   std::size_t bytes = memory_.bytes();
-  for (const auto& part : parts_) bytes += part->memory_.bytes();
+  for (const auto& arc : arcs_) bytes += arc->memory_.bytes();
   return bytes;
 }
 

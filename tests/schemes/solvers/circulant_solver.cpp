@@ -3,6 +3,7 @@
 
 #include <Eigen/Sparse>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "tests/catch.hpp"
@@ -62,14 +63,38 @@ struct Solving {
     double* const w[]{work()};
     solver.solve(w);
   }
-  /// By strips. `sums`: right sides are sums that the sweep evaluates itself. True if every pack came once.
-  bool sweep(const LinearSolver& solver, int strip, bool sums = false, int component = 0) {
+  /// An arc of the row, with memory of its own.
+  struct Arc {
+    PackRange packs;
+    std::unique_ptr<Sweeps> sweeps;
+    RowBuffer w;
+    Pack first = 0.0;
+  };
+  void give(int from, int to, double* w) {
+    std::copy(right() + layout.at(from), right() + layout.at(to), w + layout.at(from));
+  }
+
+  /// By strips along so many arcs. `sums`: right sides are sums that the sweep evaluates itself. True if every pack came once.
+  bool sweep(const LinearSolver& solver, int strip, bool sums = false, int component = 0, int arcs = 1) {
     prepare(solver, component);
-    const auto sweeps = solver.sweeps(component);
-    if (!sweeps) return false;
-    const PackRange before = sweeps->warm_up();
-    give(before.first, before.last);
-    sweeps->begin(work());
+    std::vector<Arc> all;
+    for (int p = 0; p < arcs; ++p) {
+      const PackRange packs{layout.first_of_part(p, arcs), layout.first_of_part(p + 1, arcs)};
+      all.push_back({packs, solver.sweeps(component, packs), RowBuffer(layout, 1)});
+      if (!all.back().sweeps) return false;
+    }
+    const bool whole = all[0].sweeps->takes_whole_rows();
+    constexpr int margin = 2;  // packs that an arc takes from the joint with the next one
+    const int near = whole ? 0 : all[0].sweeps->near() + margin;
+    for (Arc& arc : all) {
+      const int end = arc.packs.first == 0 ? layout.packs() : arc.packs.first;
+      give(end - near, end, arc.w.row(0));
+      arc.sweeps->begin(arc.w.row(0), {end - near, end});
+      if (whole) continue;
+      give(arc.packs.first, arc.packs.first + near, arc.w.row(0));
+      arc.sweeps->forward(arc.w.row(0), arc.packs.first + near);
+      arc.first = arc.sweeps->first(arc.w.row(0));
+    }
     RowSum sum;
     sum.add(0, 0, 1);
     const double* const table[]{right()};
@@ -77,22 +102,31 @@ struct Solving {
     solution.assign(layout.doubles(), std::numeric_limits<double>::quiet_NaN());
     RowBuffer zeros(layout.doubles()), made(layout.doubles(), 2);
     RowUpdate update{zeros.row(0), zeros.row(0), made.row(0), made.row(1), 0.0, 1.0, 0.0};
-    for (int end = 0; end < layout.packs();) {
-      const int begin = end;
-      end = std::min(layout.packs(), end + strip);
-      if (sums) {
-        sweeps->forward(sum, table, work(), end);
-      } else {
-        give(begin, end);
-        sweeps->forward(work(), end);
-      }
-      for (;;) {
-        const PackRange ready = sweeps->ready();
-        if (ready.first >= ready.last) break;
-        sweeps->backward(work(), update);
-        for (int v = ready.first; v < ready.last; ++v) ++seen[v];
-        std::copy(made.row(1) + layout.at(ready.first), made.row(1) + layout.at(ready.last),
-                  solution.data() + layout.at(ready.first));
+    for (std::size_t p = 0; p < all.size(); ++p) {
+      Arc &arc = all[p], &next = all[(p + 1) % all.size()];
+      const int last = arc.packs.last - (whole ? 0 : margin);
+      for (int end = arc.packs.first + near; end < last;) {
+        const int begin = end;
+        end = std::min(last, end + strip);
+        if (sums) {
+          arc.sweeps->forward(sum, table, arc.w.row(0), end);
+        } else {
+          give(begin, end, arc.w.row(0));
+          arc.sweeps->forward(arc.w.row(0), end);
+        }
+        if (end == last && !whole) {
+          const auto from = next.w.row(0) + layout.at(last);
+          std::copy(from, from + margin * lanes, arc.w.row(0) + layout.at(last));
+          arc.sweeps->end(next.first);
+        }
+        for (;;) {
+          const PackRange ready = arc.sweeps->ready();
+          if (ready.first >= ready.last) break;
+          arc.sweeps->backward(arc.w.row(0), update);
+          for (int v = ready.first; v < ready.last; ++v) ++seen[v];
+          std::copy(made.row(1) + layout.at(ready.first), made.row(1) + layout.at(ready.last),
+                    solution.data() + layout.at(ready.first));
+        }
       }
     }
     std::ranges::copy(solution, work());
@@ -151,7 +185,7 @@ TEST_CASE("sweeps over short rows are a whole solve, whatever the strips") {
           Solving whole(N), swept(N);
           const CirculantSolver solver(whole.layout, A.centre, A.side), other(swept.layout, A.centre, A.side);
           whole.solve(solver);
-          CHECK(other.sweeps(0)->takes_whole_rows());
+          CHECK(other.sweeps(0, swept.layout.all())->takes_whole_rows());
           CHECK(swept.sweep(other, strip, sums));
           double worst = 0, size = 1;
           for (auto at = whole.layout.at(0); at < whole.layout.at(whole.layout.packs()); ++at) {
@@ -162,21 +196,22 @@ TEST_CASE("sweeps over short rows are a whole solve, whatever the strips") {
         }
 }
 
-TEST_CASE("a long row is swept strip by strip, its ends known from the last packs alone") {
+TEST_CASE("a long row is swept strip by strip and arc by arc, arcs joined by the packs near their ends alone") {
   for (int N : long_sizes())
     for (double q : {-7.0 / 9, 0.3, -1e-6, 0.9})
-      for (bool sums : {false, true}) {
-        CAPTURE(N, q, sums);
+      for (int arcs : {1, 2, 3}) {
+        CAPTURE(N, q, arcs);
         const Circulant A = with_root(q, 1.3);
         Solving solving(N);
         const CirculantSolver solver(solving.layout, A.centre, A.side);
-        const auto sweeps = solver.sweeps(0);
+        const auto sweeps = solver.sweeps(0, solving.layout.all());
         REQUIRE(sweeps);
         CHECK_FALSE(sweeps->takes_whole_rows());
-        CHECK(sweeps->warm_up().last == solving.layout.packs());
-        CHECK(sweeps->warm_up().first > solving.layout.packs() / 2);
-        CHECK(solving.sweep(solver, 1024, sums));
-        CHECK(solving.off(A) < 1e-15 * (20 + 1 / ((1 - std::abs(q)) * (1 - std::abs(q)))));
+        CHECK(sweeps->near() < solving.layout.packs() / 2);
+        for (bool sums : {false, true}) {
+          CHECK(solving.sweep(solver, 1024, sums, 0, arcs));
+          CHECK(solving.off(A) < 1e-15 * (20 + 1 / ((1 - std::abs(q)) * (1 - std::abs(q)))));
+        }
         solving.solve(solver);
         CHECK(solving.off(A) < 1e-15 * (20 + 1 / ((1 - std::abs(q)) * (1 - std::abs(q)))));
       }
@@ -186,7 +221,7 @@ TEST_CASE("a long row whose ends feel each other is swept as a whole") {
   Solving solving(4096 * lanes + 1);
   const Circulant A = with_root(0.999);
   const CirculantSolver solver(solving.layout, A.centre, A.side);
-  CHECK(solver.sweeps(0)->takes_whole_rows());
+  CHECK(solver.sweeps(0, solving.layout.all())->takes_whole_rows());
   CHECK(solving.sweep(solver, 1024));
   CHECK(solving.off(A) < 1e-9);
 }
