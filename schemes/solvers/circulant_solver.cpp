@@ -66,22 +66,6 @@ void CirculantSolver::build_closure() {
     }
 }
 
-/// u_i = r_i + q u_{i−1} in place; returns the last u. Four at once: u_4 = (r_4 + q(r_3 + …)) + q⁴ u_0 waits for u_0 alone.
-Pack CirculantSolver::run_forward(double* u, int first, int last, Pack before) const {
-  const double q = q_, q2 = q * q, q3 = q * q2, q4 = q2 * q2;
-  double *at = u + layout_->at(first), *const end = u + layout_->at(last);
-  for (; at + 3 * lanes < end; at += 4 * lanes) {
-    const Pack s1 = Pack::load(at), s2 = Pack::load(at + lanes) + q * s1, s3 = Pack::load(at + 2 * lanes) + q * s2,
-               s4 = Pack::load(at + 3 * lanes) + q * s3;
-    (s1 + q * before).store(at);
-    (s2 + q2 * before).store(at + lanes);
-    (s3 + q3 * before).store(at + 2 * lanes);
-    (before = s4 + q4 * before).store(at + 3 * lanes);
-  }
-  for (; at < end; at += lanes) (before = Pack::load(at) + q * before).store(at);
-  return before;
-}
-
 namespace {
 
 /// u_i = r_i + q u_{i−1} of right sides as they are formed.
@@ -94,16 +78,19 @@ struct Recurrence {
 
 }  // namespace
 
-/// The forward run for the right side that a sum of rows gives.
-Pack CirculantSolver::run_forward(const RowSum& sum, const double* const* rows, double* u, int first, int last,
+/// u_i = r_i + q u_{i−1}, r a sum of rows, or in place; returns the last u.
+Pack CirculantSolver::run_forward(const RowSum* sum, const double* const* rows, double* u, int first, int last,
                                   Pack before) const {
   Recurrence sink{q_, u, before};
-  sum.pass<lanes>(rows, layout_->at(first), layout_->at(last), sink);
+  const std::ptrdiff_t begin = layout_->at(first), end = layout_->at(last);
+  if (sum) sum->pass<lanes>(rows, begin, end, sink);
+  else
+    for (std::ptrdiff_t at = begin; at < end; at += lanes) sink(at, Pack::load(u + at));
   return sink.last;
 }
 
 /// sink(at, x_i) with x_i = (u_i + q^(i+1) U) + q x_{i+1}, U what enters the arcs, felt in the first `near` packs; returns
-/// the first x. Four at once, as above.
+/// the first x. Four at once: they wait for the one after them alone.
 template <class Sink>
 Pack CirculantSolver::run_backward(const double* u, int first, int last, Pack after, Pack entering_u,
                                    Sink& given) const {
@@ -157,7 +144,7 @@ CirculantSolver::Entering CirculantSolver::entering(const double* u, Pack sums) 
 
 void CirculantSolver::solve(double* const* w) const {
   double* const u = w[0];
-  run_forward(u, 0, layout_->packs(), Pack(0.0));
+  run_forward(nullptr, nullptr, u, 0, layout_->packs(), Pack(0.0));
   const Entering e = entering(u, sum_of_first(u));
   const auto store = [u](std::ptrdiff_t at, Pack x) { x.store(u + at); };
   run_backward(u, 0, layout_->packs(), e.x, e.u, store);
@@ -170,13 +157,11 @@ class CirculantSolver::WholeRow final : public Sweeps {
   int near() const override { return s_.near_; }
   bool takes_whole_rows() const override { return true; }
   void begin(double*, PackRange) override { ready_ = 0, last_ = Pack(0.0); }
-  void forward(double* u, int end) override {
-    last_ = s_.run_forward(u, ready_, end, last_);
-    close(u, end);
-  }
-  void forward(const RowSum& sum, const double* const* rows, double* u, int end) override {
+  void forward(const RowSum* sum, const double* const* rows, double* u, int end) override {
     last_ = s_.run_forward(sum, rows, u, ready_, end, last_);
-    close(u, end);
+    if ((ready_ = end) < packs_) return;
+    left_ = packs_;
+    from_outside_ = s_.entering(u, s_.sum_of_first(u));
   }
   PackRange ready() const override {
     if (ready_ < packs_) return {0, 0};
@@ -189,12 +174,6 @@ class CirculantSolver::WholeRow final : public Sweeps {
   }
 
  private:
-  void close(const double* u, int end) {
-    if ((ready_ = end) < packs_) return;
-    left_ = packs_;
-    from_outside_ = s_.entering(u, s_.sum_of_first(u));
-  }
-
   static constexpr int strip = 64;
   const CirculantSolver& s_;
   const int packs_;
@@ -209,7 +188,7 @@ class CirculantSolver::ByStrips final : public Sweeps {
   ByStrips(const CirculantSolver& solver, PackRange arc) : s_(solver), arc_(arc) {}
   int near() const override { return s_.near_; }
   void begin(double* u, PackRange before) override {
-    last_ = s_.run_forward(u, before.first, before.last, Pack(0.0));
+    last_ = s_.run_forward(nullptr, nullptr, u, before.first, before.last, Pack(0.0));
     if (arc_.first == 0) last_ = s_.layout_->before_first(u);
     ready_ = done_ = arc_.first;
   }
@@ -218,11 +197,7 @@ class CirculantSolver::ByStrips final : public Sweeps {
     return solution_at(u, arc_.first, arc_.first + s_.near_, Pack(0.0));
   }
   void end(Pack after) override { ready_ = arc_.last, after_ = after; }
-  void forward(double* u, int end) override {
-    last_ = s_.run_forward(u, ready_, end, last_);
-    ready_ = end;
-  }
-  void forward(const RowSum& sum, const double* const* rows, double* u, int end) override {
+  void forward(const RowSum* sum, const double* const* rows, double* u, int end) override {
     last_ = s_.run_forward(sum, rows, u, ready_, end, last_);
     ready_ = end;
   }

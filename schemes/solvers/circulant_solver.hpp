@@ -38,8 +38,7 @@ class CirculantSolver final : public LinearSolver {
   };
   Entering entering(const double* u, Pack sums) const;
   void build_closure();
-  Pack run_forward(double* u, int first, int last, Pack u_before) const;
-  Pack run_forward(const RowSum&, const double* const* rows, double* u, int first, int last, Pack u_before) const;
+  Pack run_forward(const RowSum*, const double* const* rows, double* u, int first, int last, Pack u_before) const;
   template <class Sink>
   Pack run_backward(const double* u, int first, int last, Pack x_after, Pack entering_u, Sink& sink) const;
   Pack sum_of_first(const double* u) const;

@@ -28,9 +28,8 @@ class Sweeps {
   virtual Pack first(const double* /*w*/) const { return 0.0; }
   /// Ends the arc: it is swept forward, and the solution after its last pack is this one.
   virtual void end(Pack /*after*/) {}
-  /// The right side is there for the packs up to `end`; the first call begins at the arc's. With a sum, it is that one.
-  virtual void forward(double* w, int end) = 0;
-  virtual void forward(const RowSum& right_side, const double* const* rows, double* w, int end) = 0;
+  /// Right sides are there up to pack `end`, from the arc's first on: this sum's, or those in w if it is null.
+  virtual void forward(const RowSum* right_side, const double* const* rows, double* w, int end) = 0;
   /// The next packs to solve for: none until more are swept forward. Whatever the order, each comes once.
   virtual PackRange ready() const = 0;
   /// Solves for them, and updates their sites by the solution, which is not kept.

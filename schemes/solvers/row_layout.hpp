@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <concepts>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -64,10 +63,6 @@ class RowLayout {
   /// True if packs of a halo are packs of the row, moved by a lane; before_first() is then the one before the first.
   bool finds_halos_by_packs() const { return by_packs_; }
   Pack before_first(const double* row) const { return before_.pack(row, -lanes); }
-  /// The pack before the first, from packs that `read(at)` gives: reading what has just been stored would wait.
-  template <class Read>
-  requires std::invocable<Read, std::ptrdiff_t> Pack before_first(const Read& read)
-  const { return before_.pack_of(read, -lanes); }
   /// Makes overlapping slots equal to the slot that slot(i) names.
   void copy_overlaps(double* row) const {
     for (const Copy& c : overlap_copies_) row[c.to] = row[c.from];
@@ -97,12 +92,8 @@ class RowLayout {
     std::ptrdiff_t to = 0, from = 0, from_others = 0;
     Pack is_other = 0.0;  ///< 1 in their lanes, before they are moved
 
-    Pack pack(const double* row, std::ptrdiff_t by) const {
-      return pack_of([row](std::ptrdiff_t at) { return Pack::load(row + at); }, by);
-    }
-    template <class Read>
-    [[gnu::always_inline]] Pack pack_of(const Read& read, std::ptrdiff_t by) const {
-      const Pack one = read(from + by), other = read(from_others + by);
+    [[gnu::always_inline]] Pack pack(const double* row, std::ptrdiff_t by) const {
+      const Pack one = Pack::load(row + from + by), other = Pack::load(row + from_others + by);
       return moved(Pack{is_other.v != 0 ? other.v : one.v});
     }
     /// The packs from `by` on, at least one. A copy of it is worked with, which stores cannot change.

@@ -92,7 +92,7 @@ TEST_CASE("threads that steps cannot use are reported by the plan and by a run")
   CHECK(contains(ran.out, "  threads    1 of 2: each takes "));
 }
 
-TEST_CASE("the steps that are said to be shared are those of one loop, which write rows over") {
+TEST_CASE("the steps that are said to be shared are those along rows on a circle") {
   struct Case {
     const char *theory, *stencil, *method;
     bool on_circle = true;
@@ -118,7 +118,6 @@ TEST_CASE("the steps that are said to be shared are those of one loop, which wri
     simulation.start(std::vector(at(simulation.starting_rows()), vacuum));
     simulation.step(false);
     simulation.step(false);  // the first keeps the rows of the start
-    const Stepper& stepper = simulation.evolution().stepper();
     CHECK(contains(threads_in_words(simulation, 2), "each takes") == on_circle);
   }
 }

@@ -212,14 +212,6 @@ bool RowEquations::reads_newest_alone() const {
   });
 }
 
-double RowEquations::weight_of(const SourceRow& row) const {
-  double sum = 0;
-  for (const EquationTerms& equation : equations_.bulk)
-    for (const Term& t : equation.terms)
-      if (t.source == Source::output && &source_of(t) == &row && t.age == row.newest) sum += std::abs(t.coefficient);
-  return sum;
-}
-
 const SourceRow& RowEquations::source_of(const Term& t) const {
   const auto found = std::ranges::find_if(sources_, [&](const SourceRow& row) {
     return row.family == t.family &&

@@ -86,8 +86,6 @@ class RowEquations {
   const RowSum& prediction(const SourceRow& row, int predicted_from) const {
     return predictions_[&row - sources_.data()][predicted_from];
   }
-  /// The sum of its weights' sizes in the equation of the step.
-  double weight_of(const SourceRow&) const;
   /// The step reads rows n and v_n alone, and the source terms at row n + 1 nothing before row n.
   bool reads_newest_alone() const;
   /// Near them the equations are others.

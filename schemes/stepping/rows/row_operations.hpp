@@ -33,8 +33,8 @@ class RowOperations {
   /// The strips of this part of a row, in the order in which a pass takes them.
   const std::vector<Strip>& strips() const { return strips_; }
 
-  /// One pass over the rows: `along` each of the parts that they are shared out in, then what joins them (halos; and
-  /// comparisons that wait for these). Returns the largest |y_{n+1}|, and of each source term the largest |δ| in
+  /// One pass over the rows: `along` each of the parts that they are shared out in, once or, where parts must join first,
+  /// twice; then halos, and comparisons that wait for these. Returns the largest |y_{n+1}|, and of each source term the largest |δ| in
   /// `corrections`; null if nothing is compared.
   virtual double pass(Solving, std::vector<double>* corrections, const std::function<void(RowOperations&)>& along) = 0;
 

@@ -52,7 +52,8 @@ RowStrips::RowStrips(const LatticeSystem& system, const RowEquations& equations,
   if (distance > 0 || is_long || (solver_ == Solver::number && options.threads > 1 && most > 1)) {
     near_ = distance + layout.halo();
     delay_ = std::max(distance, equations.reach());
-    const int arcs = std::max(1, most);
+    // An arc changes no bit where there is no recurrence.
+    const int arcs = std::max(1, distance > 0 || options.threads > 1 ? most : 1);
     for (int p = 0; p < arcs; ++p)
       arcs_.emplace_back(new RowStrips(*this, layout.first_of_part(p, arcs), layout.first_of_part(p + 1, arcs)));
     if (options.threads > 1 && arcs > 1) team_.emplace(std::min(options.threads, arcs), arcs);
@@ -142,10 +143,9 @@ double RowStrips::pass(Solving solving, std::vector<double>* corrections, const 
       if (source.reads_unknown) layout_.fill_halo((*table_)[source.correction]);
   }
   if (arcs_.empty()) {
-    const ScratchRows local(has_local_ ? static_cast<int>(equations_.sources().size()) : 0, longest_strip_ * lanes);
-    local_ = &local;
+    if (!window_.empty()) move_window(from_);
     for (std::size_t a = 0; a < sweeps_.size(); ++a) sweeps_[a]->begin(w_[a], {0, 0});
-    along(*this);
+    along_strips(along);
   } else {
     for_each_arc([&](int p) { arcs_[at(p)]->make_joint(solving, corrections != nullptr, along); });
     for_each_arc([&](int p) { arcs_[at(p)]->go_on(*arcs_[at(p + 1) % arcs_.size()], along); });
@@ -170,10 +170,14 @@ void RowStrips::begin(Solving solving, std::vector<double>* corrections) {
   made_ = compared_ = {from_, from_};
   largest_ = 0.0;
   if (solving == Solving::step) order_ = 0;
-  if (!arcs_.empty() || window_.empty()) return;
-  move_window(from_);
 }
 
+void RowStrips::along_strips(const Along& along) {
+  const ScratchRows local(has_local_ ? static_cast<int>(equations_.sources().size()) : 0,
+                          std::max(longest_strip_, near_) * lanes);
+  local_ = &local;
+  along(*this);
+}
 void RowStrips::for_each_arc(const std::function<void(int)>& part) {
   const int arcs = static_cast<int>(arcs_.size());
   if (team_) return team_->run(arcs, part);
@@ -182,13 +186,11 @@ void RowStrips::for_each_arc(const std::function<void(int)>& part) {
 
 /// Right sides of the packs before the arc and of its first ones, swept forward; and the solution where they meet.
 void RowStrips::make_joint(Solving solving, bool compares, const Along& along) {
-  const ScratchRows local(has_local_ ? static_cast<int>(equations_.sources().size()) : 0, near_ * lanes);
-  local_ = &local;
   if (has_local_) own_.point_as(*of_whole_);
   begin(solving, compares ? &own_corrections_ : nullptr);
   is_at_joint_ = true;
   std::swap(strips_, at_joint_);
-  along(*this);
+  along_strips(along);
   std::swap(strips_, at_joint_);
   is_at_joint_ = false;
 }
@@ -198,22 +200,21 @@ void RowStrips::right_side_at_joint(Strip packs) {
   equations_.right_sides(*table_, kept_.newest(), solving_, packs.first, packs.last, w_.data());
   for (std::size_t a = 0; a < sweeps_.size(); ++a) {
     if (is_before) sweeps_[a]->begin(w_[a], {packs.first, packs.last});
-    else sweeps_[a]->forward(w_[a], packs.last), first_[a] = sweeps_[a]->first(w_[a]);
+    else sweeps_[a]->forward(nullptr, nullptr, w_[a], packs.last), first_[a] = sweeps_[a]->first(w_[a]);
   }
 }
 
 /// The packs between the joints.
 void RowStrips::go_on(const RowStrips& next, const Along& along) {
-  const ScratchRows local(has_local_ ? static_cast<int>(equations_.sources().size()) : 0, longest_strip_ * lanes);
   const ScratchRows window(d_, (longest_strip_ + near_ + delay_ + layout_.halo()) * lanes);
-  local_ = &local, next_ = &next;
+  next_ = &next;
   for (int a = 0; a < d_; ++a) {
     window_[a] = window[a];
     std::memcpy(window[a], memory_.row(a) + near_ * lanes, at(near_ * lanes) * sizeof(double));
   }
   move_window(from_);
   formed_ = from_ + near_;
-  along(*this);
+  along_strips(along);
 }
 
 /// δ = g′ − g again, where the pass of the step has not kept it.
@@ -300,11 +301,8 @@ void RowStrips::right_side(Strip packs) {
   }
   const bool are_sums = solver_ == Solver::sweeps && equations_.right_side(0, solving_);
   if (!are_sums) equations_.right_sides(rows, n, solving_, packs.first, packs.last, w_.data());
-  if (solver_ == Solver::sweeps)
-    for (std::size_t a = 0; a < sweeps_.size(); ++a) {
-      if (!are_sums) sweeps_[a]->forward(w_[a], packs.last);
-      else sweeps_[a]->forward(*equations_.right_side(static_cast<int>(a), solving_), rows.data(), w_[a], packs.last);
-    }
+  for (std::size_t a = 0; a < sweeps_.size(); ++a)
+    sweeps_[a]->forward(equations_.right_side(static_cast<int>(a), solving_), rows.data(), w_[a], packs.last);
   if (!next_ || packs.last != strips_.back().last) return;
   // The last packs of an arc are those of the joint with the next one.
   formed_ = to_;

@@ -57,6 +57,7 @@ class RowStrips final : public RowOperations {
   bool takes_whole_rows() const { return !sweeps_.empty() && sweeps_[0]->takes_whole_rows(); }
   bool updates_from_sums() const { return sums_are_updates_ && !kept_.in_place(); }
   void begin(Solving, std::vector<double>* corrections);
+  void along_strips(const Along&);
   void make_joint(Solving, bool compares, const Along&);
   void right_side_at_joint(Strip);
   void go_on(const RowStrips& next, const Along&);

@@ -92,7 +92,7 @@ struct Solving {
       arc.sweeps->begin(arc.w.row(0), {end - near, end});
       if (whole) continue;
       give(arc.packs.first, arc.packs.first + near, arc.w.row(0));
-      arc.sweeps->forward(arc.w.row(0), arc.packs.first + near);
+      arc.sweeps->forward(nullptr, nullptr, arc.w.row(0), arc.packs.first + near);
       arc.first = arc.sweeps->first(arc.w.row(0));
     }
     RowSum sum;
@@ -108,12 +108,8 @@ struct Solving {
       for (int end = arc.packs.first + near; end < last;) {
         const int begin = end;
         end = std::min(last, end + strip);
-        if (sums) {
-          arc.sweeps->forward(sum, table, arc.w.row(0), end);
-        } else {
-          give(begin, end, arc.w.row(0));
-          arc.sweeps->forward(arc.w.row(0), end);
-        }
+        if (!sums) give(begin, end, arc.w.row(0));
+        arc.sweeps->forward(sums ? &sum : nullptr, table, arc.w.row(0), end);
         if (end == last && !whole) {
           const auto from = next.w.row(0) + layout.at(last);
           std::copy(from, from + margin * lanes, arc.w.row(0) + layout.at(last));
