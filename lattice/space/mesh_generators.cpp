@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "lattice/index.hpp"
 #include "lattice/space/mesh.hpp"
 
 namespace delf {
@@ -73,10 +75,11 @@ Mesh icosahedral_sphere(int level) {
                        {-g, 0, 1}},
             .vertices = {}};
   for (Mesh::Point& p : mesh.points) p = on_sphere(p);
-  std::vector<std::array<std::int32_t, 3>> faces{{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                                                 {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                                 {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                                                 {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  // Two faces are a square of points, diamond[y][x], with (0, 0), (n, 0), (n, n) and (0, n) counterclockwise from outside.
+  using Diamond = std::vector<std::vector<std::int32_t>>;
+  std::vector<Diamond> diamonds{{{0, 11}, {5, 4}},  {{0, 5}, {1, 9}}, {{0, 1}, {7, 8}}, {{0, 7}, {10, 6}},
+                                {{0, 10}, {11, 2}}, {{3, 9}, {4, 5}}, {{3, 8}, {9, 1}}, {{3, 6}, {8, 7}},
+                                {{3, 2}, {6, 10}},  {{3, 4}, {2, 11}}};
   for (int n = 0; n < level; ++n) {
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
     const auto middle = [&](std::int32_t a, std::int32_t b) {
@@ -88,14 +91,38 @@ Mesh icosahedral_sphere(int level) {
       }
       return known->second;
     };
-    std::vector<std::array<std::int32_t, 3>> finer;
-    for (const auto& [a, b, c] : faces) {
-      const std::int32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-      finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    for (Diamond& coarse : diamonds) {
+      const std::size_t size = 2 * coarse.size() - 1;
+      Diamond fine(size, std::vector<std::int32_t>(size));
+      for (std::size_t y = 0; y < size; ++y)
+        for (std::size_t x = 0; x < size; ++x)
+          fine[y][x] = y % 2 && x % 2   ? middle(coarse[y / 2][x / 2 + 1], coarse[y / 2 + 1][x / 2])
+                       : y % 2 || x % 2 ? middle(coarse[y / 2][x / 2], coarse[(y + 1) / 2][(x + 1) / 2])
+                                        : coarse[y / 2][x / 2];
+      coarse = std::move(fine);
     }
-    faces = std::move(finer);
   }
-  for (const auto& face : faces) mesh.add_cell(face);
+  // Points are numbered along the rows of diamonds, and the two poles last. Each diamond has two of its sides: those that
+  // leave its pole along x, in the north, or along y.
+  std::vector<std::int32_t> order;
+  for (const Diamond& points : diamonds) {
+    const std::size_t south = points[0][0] == 0 ? 0 : 1;
+    for (std::size_t y = south; y + 1 < points.size() + south; ++y)
+      for (std::size_t x = 1 - south; x < points.size() - south; ++x) order.push_back(points[y][x]);
+  }
+  order.insert(order.end(), {0, 3});
+  std::vector<std::int32_t> number(order.size());
+  const std::vector<Mesh::Point> as_found = mesh.points;
+  for (std::size_t n = 0; n < order.size(); ++n)
+    number[at(order[n])] = static_cast<std::int32_t>(n), mesh.points[n] = as_found[at(order[n])];
+  for (const Diamond& points : diamonds)
+    for (std::size_t y = 0; y + 1 < points.size(); ++y)
+      for (std::size_t x = 0; x + 1 < points.size(); ++x) {
+        const std::int32_t a = number[at(points[y][x])], b = number[at(points[y][x + 1])],
+                           c = number[at(points[y + 1][x + 1])], d = number[at(points[y + 1][x])];
+        mesh.add_cell(std::array{a, b, d});
+        mesh.add_cell(std::array{b, c, d});
+      }
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "jets/simd/exact_sum.hpp"
 #include "jets/simd/scratch_rows.hpp"
@@ -40,6 +41,15 @@ void add(double* y, double w, std::array<const double*, 3> own, const double* x,
   }
 }
 void fill_zero(double* y, int count) { std::fill_n(y, count, 0.0); }
+
+/// use(entries) for each run of entries with an equal key.
+template <class Entry>
+void for_each_equal(const std::vector<Entry>& entries, int Entry::*key, const auto& use) {
+  for (auto first = entries.begin(), last = first; first != entries.end(); first = last) {
+    last = std::find_if(first, entries.end(), [&](const Entry& e) { return e.*key != (*first).*key; });
+    use(std::span<const Entry>(first, last));
+  }
+}
 
 bool is_rate(int slot) { return slot_powers[at(slot)].time > 0; }
 
@@ -267,6 +277,8 @@ void JetFamily::find_lanes() {
             }
           if (smallest) *smallest -= rest + low;
         }
+    std::ranges::sort(of.jets, {}, [](const Lanes::Entry& e) { return std::pair(e.slot, e.vertex); });
+    std::ranges::sort(of.tests, {}, [](const Lanes::Entry& e) { return std::pair(e.vertex, e.slot); });
     across_points_.push_back(std::move(of));
   }
 }
@@ -334,21 +346,31 @@ bool JetFamily::residual_of_one(const StencilBatch& batch, std::span<const int> 
   for (std::size_t e = 0; e < equations.size(); ++e) place[equations[e]] = static_cast<int>(e);
   for (const Lanes& points : across_points_) {
     fill_zero(jets[0], m * lanes);
-    for (const auto& [slot, vertex, weight] : points.jets)
+    // A sum is stored when it is complete: each store and load of it waits for the one before.
+    for_each_equal(points.jets, &Lanes::Entry::slot, [&](std::span<const Lanes::Entry> entries) {
+      const int slot = entries[0].slot;
+      const bool by_increments = batch.low != nullptr && is_rate(slot);
       for (int a = 0; a < d_; ++a) {
-        double* const to = jets[slot * d_ + a];
-        const int i = vertex * d_ + a;
-        const double value = batch.low != nullptr && is_rate(slot) ? increment(i) : batch.y[i * lanes];
-        (Pack::load(to) + (scales[at(slot)] * value) * weight).store(to);
+        Pack sum(0.0);
+        for (const auto& [_, vertex, weight] : entries) {
+          const int i = vertex * d_ + a;
+          sum += (scales[at(slot)] * (by_increments ? increment(i) : batch.y[i * lanes])) * weight;
+        }
+        sum.store(jets[slot * d_ + a]);
       }
+    });
     of_.density->gradient({lanes, jets.data(), batch.cell.t, batch.x}, g.data());
-    for (const auto& [slot, vertex, weight] : points.tests)
+    for_each_equal(points.tests, &Lanes::Entry::vertex, [&](std::span<const Lanes::Entry> entries) {
       for (int a = 0; a < d_; ++a) {
-        const int e = place[vertex * d_ + a];
+        const int e = place[entries[0].vertex * d_ + a];
         if (e < 0) continue;
         double* const to = r + static_cast<std::ptrdiff_t>(e) * lanes;
-        (Pack::load(to) + (area * scales[at(slot)]) * (weight * Pack::load(g[slot * d_ + a]))).store(to);
+        Pack sum = Pack::load(to);
+        for (const auto& [slot, _, weight] : entries)
+          sum += (area * scales[at(slot)]) * (weight * Pack::load(g[slot * d_ + a]));
+        sum.store(to);
       }
+    });
   }
   for (std::size_t e = 0; e < equations.size(); ++e) {
     double* const to = r + static_cast<std::ptrdiff_t>(e) * lanes;

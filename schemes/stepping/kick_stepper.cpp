@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -18,6 +19,7 @@
 #include "jets/tables/density_on_table.hpp"
 #include "lattice/index.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
+#include "schemes/stepping/newton.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/system/driven_values.hpp"
 #include "schemes/system/momenta.hpp"
@@ -96,10 +98,11 @@ bool KickStepper::Parts::add(const LatticeSystem& system, const StencilFamily& f
       const double J = part->J[i * n + m];
       const Value& u = values[m];
       if (J == 0) continue;
+      const double K = others->J[i * n + m] / longer;
+      const bool is_kinetic = std::abs(K) <= tiny * std::abs(J);
       if (u.node == v.node) {
-        if (const double K = others->J[i * n + m] / longer; std::abs(K) > tiny * std::abs(J))
-          entries[v.node][{v.place, u.place}] += K;
-      } else if (u.place != v.place || std::abs(u.node - v.node) != 1) return false;
+        if (!is_kinetic) entries[v.node][{v.place, u.place}] += K;
+      } else if (!is_kinetic || u.place != v.place || std::abs(u.node - v.node) != 1) return false;
       else if (u.node > v.node) mass[v.node][v.place] -= J;
     }
   }
@@ -191,20 +194,36 @@ KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const 
     }
   }
   for (Source& source : kick.sources) keep_some(source);
+  if (std::ranges::all_of(kick.constant, [](const Pack& c) { return max_or_nan(abs(c)) == 0; })) kick.constant.clear();
   auto next = K.begin();
   for (int pack = 0; pack < fields * padded; pack += lanes) {
-    const auto begin = static_cast<int>(kick.value.size());
-    kick.first.push_back(begin);
-    for (int lane = 0; lane < lanes; ++lane)
-      for (int e = begin; next != K.end() && next->first.first == pack + lane; ++next, ++e) {
-        if (e == static_cast<int>(kick.value.size())) {
-          kick.value.emplace_back(0.0);
-          kick.column.insert(kick.column.end(), at(lanes),
-                             pack);  // rows with fewer entries read a value and take nothing of it
-        }
-        kick.column[e * lanes + lane] = next->first.second;
-        numbers(kick.value)[e * lanes + lane] = next->second;
+    kick.first.push_back(static_cast<std::int32_t>(kick.value.size()));
+    const auto begin = next;
+    std::map<int, int> rows_at;  // rows of the pack with an entry so far from their own place
+    for (; next != K.end() && next->first.first < pack + lanes; ++next)
+      ++rows_at[next->first.second - next->first.first];
+    const auto add = [&](int column) {
+      kick.column.push_back(column), kick.value.emplace_back(0.0);
+      return static_cast<int>(kick.value.size()) - 1;
+    };
+    // Rows without an entry there read a value and take nothing of it.
+    std::map<int, int> entry_at;
+    for (const auto& [apart, rows] : rows_at)
+      if (2 * rows >= lanes && pack + apart >= 0 && pack + apart + lanes <= fields * padded)
+        entry_at.emplace(apart, add(pack + apart));
+    const auto first_listed = static_cast<int>(kick.value.size());
+    std::array<int, lanes> used{};
+    for (auto entry = begin; entry != next; ++entry) {
+      const auto [row, column] = entry->first;
+      const auto found = entry_at.find(column - row);
+      const int lane = row - pack, e = found != entry_at.end() ? found->second : first_listed + used[lane]++;
+      if (e == static_cast<int>(kick.value.size())) {
+        add(~static_cast<int>(kick.listed.size()));
+        kick.listed.insert(kick.listed.end(), at(lanes), pack);
       }
+      if (found == entry_at.end()) kick.listed[~kick.column[e] + lane] = column;
+      numbers(kick.value)[e * lanes + lane] = entry->second;
+    }
   }
   kick.first.push_back(static_cast<std::int32_t>(kick.value.size()));
   return kick;
@@ -222,7 +241,8 @@ bool KickStepper::Parts::is_symmetric() const {
     }
     return apart <= 1e-14 * most;
   };
-  return below.column == above.column && equal(below.value, above.value) && equal(below.constant, above.constant) &&
+  return below.column == above.column && below.listed == above.listed && equal(below.value, above.value) &&
+         equal(below.constant, above.constant) &&
          std::ranges::equal(below.sources, above.sources, [&](const Source& a, const Source& b) {
            return a.family == b.family && equal(a.weights, b.weights);
          });
@@ -261,6 +281,8 @@ std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const
 KickStepper::KickStepper(const LatticeSystem& system, const StepOptions& options, Parts parts)
     : system_(system),
       monodromy_(options.monodromy),
+      tolerance_(options.tolerance),
+      max_iterations_(options.max_iterations),
       fields_(parts.fields),
       nodes_(parts.nodes),
       padded_(parts.padded),
@@ -307,12 +329,12 @@ void KickStepper::kick_some(const Source& source, double of_kick, double t, cons
 /// P ← P + κ (K y + c + w N′(y)),   y′ = y + δ M⁻¹ P, strip by strip, with κ and δ as they are given.
 void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double of_drift, double t, Node& next) {
   const Node& here = node(newest_, n);
-  const double *const from = numbers(here.y), *const from_low = numbers(here.low),
-                      *const constant = numbers(kick.constant), *const drift = numbers(inverse_[n]),
-                      *const value = numbers(kick.value);
+  const double *const from = numbers(here.y), *const from_low = numbers(here.low), *const drift = numbers(inverse_[n]),
+                      *const value = numbers(kick.value),
+                      *const constant = kick.constant.empty() ? nullptr : numbers(kick.constant);
   double *const P = numbers(momentum_), *const to = numbers(next.y), *const to_low = numbers(next.low);
   const ScratchRows slope(fields_, strip);
-  const std::int32_t* const column = kick.column.data();
+  const std::int32_t *const column = kick.column.data(), *const listed = kick.listed.data();
   for (const Source& source : kick.sources)
     if (!source.sites.empty()) kick_some(source, of_kick, t, from, P);
   for (int first = 0; first < padded_; first += strip) {
@@ -320,10 +342,11 @@ void KickStepper::kick_and_drift(const Kick& kick, int n, double of_kick, double
     for (int a = 0; a < fields_; ++a) {
       const int begin = a * padded_ + first;
       for (int i = begin; i < begin + count; i += lanes) {
-        Pack sum = Pack::load(constant + i);
+        Pack sum = constant ? Pack::load(constant + i) : Pack(0.0);
         const int end = kick.first[i / lanes + 1];
         for (int e = kick.first[i / lanes]; e < end; ++e)
-          sum += Pack::load(value + e * lanes) * gather(from, column + e * lanes);
+          sum += Pack::load(value + e * lanes) *
+                 (column[e] >= 0 ? load_unaligned(from + column[e]) : gather(from, listed + ~column[e]));
         (Pack::load(P + i) + of_kick * sum).store(P + i);
       }
       inputs_[a] = from + begin;
@@ -423,6 +446,14 @@ void KickStepper::start(const std::vector<std::vector<double>>& rows) {
   }
 }
 
+void KickStepper::start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) {
+  if (nodes_ > 1) return StepMethod::start_centred(row0, velocity);
+  const SolvePlan plan = make_plan(system_.lattice(), system_.pattern());
+  start({row0, solve_centred_start(system_, plan, system_.window(0, {row0}, monodromy_), velocity, false, tolerance_,
+                                   max_iterations_)
+                   .row});
+}
+
 void KickStepper::start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) {
   newest_ = 0, held_ = 1;
   Node& first = node(0, 0);
@@ -470,8 +501,8 @@ double KickStepper::residual() const {
 }
 
 std::size_t KickStepper::bytes_of(const Kick& kick) {
-  std::size_t sum =
-      4 * (kick.first.size() + kick.column.size()) + sizeof(Pack) * (kick.value.size() + kick.constant.size());
+  std::size_t sum = 4 * (kick.first.size() + kick.column.size() + kick.listed.size()) +
+                    sizeof(Pack) * (kick.value.size() + kick.constant.size());
   for (const Source& source : kick.sources)
     sum += sizeof(Pack) * (source.weights.size() + source.x.size()) + 4 * source.sites.size();
   return sum;

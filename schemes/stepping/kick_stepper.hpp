@@ -28,6 +28,7 @@ class KickStepper final : public StepMethod {
   static std::unique_ptr<StepMethod> make(const LatticeSystem&, const SolvePlan&, const StepOptions&);
 
   void start(const std::vector<std::vector<double>>& rows) override;
+  void start_centred(const std::vector<double>& row0, const std::vector<double>& velocity) override;
   void start_legendre(const std::vector<double>& row0, const std::vector<double>& momenta) override;
   void step(bool) override;
 
@@ -51,10 +52,11 @@ class KickStepper final : public StepMethod {
   };
   /// The kick of the values at a node, y[a·padded + i], a field after the other.
   struct Kick {
-    /// Of each pack of rows of K its entries, and the end; an entry has a column and a value for each lane.
-    std::vector<std::int32_t> first, column;
+    /// Of each pack of rows of K its entries, and the end. An entry has a value for each lane: of neighbouring places from
+    /// `column` on, or where that is negative, of those that are listed from ~column on.
+    std::vector<std::int32_t> first, column, listed;
     Packs value;
-    Packs constant;
+    Packs constant;  ///< none if all are zero
     std::vector<Source> sources;
   };
   /// Values are y + low.
@@ -79,7 +81,8 @@ class KickStepper final : public StepMethod {
   std::vector<double> row_of(std::int64_t row, int behind, bool low) const;
 
   const LatticeSystem& system_;
-  double monodromy_;
+  double monodromy_, tolerance_;
+  int max_iterations_;
   int fields_, nodes_, padded_;        ///< nodes of a slab but the last; sites to whole packs
   std::vector<int> behind_;            ///< rows that the newest of a component is below the newest row
   Kick alone_;                         ///< of row 0, which has no slab below it

@@ -84,9 +84,6 @@ std::vector<SlabStepper::Unknowns> SlabStepper::list_unknowns(const Assembly& eq
     list->numbers.push_back(n);
     list->places.push_back(u.site.space * components_ + u.component);
   }
-  for (Unknowns& list : lists)
-    for (std::vector<int>* numbers : {&list.numbers, &list.places})
-      numbers->resize((numbers->size() + lanes - 1) / lanes * lanes, numbers->back());
   // Inner nodes that have no past take the value of their cell's vertex: fields come first.
   std::ranges::stable_partition(lists, &Unknowns::field);
   return lists;
@@ -171,8 +168,9 @@ Stop SlabStepper::solve_levels(Parity& p, std::int64_t J) {
 /// The largest |y| of the fields in a row: starting rows need not hold anything else.
 double SlabStepper::largest_of(const double* row) const {
   double largest = 0;
-  for (std::size_t at = 0; at < predicted_.size(); ++at)
-    if (system_.component(static_cast<int>(at) % components_).role == Role::field)
+  for (int c = 0; c < components_; ++c)
+    for (std::size_t at = delf::at(c); system_.component(c).role == Role::field && at < predicted_.size();
+         at += delf::at(components_))
       largest = std::max(largest, std::abs(row[at]));
   return largest;
 }
@@ -274,6 +272,7 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
   std::copy_n(ring_->low(J + future_ - 1), size, ring_->low(J + future_));
   for (std::int64_t row = std::max<std::int64_t>(J - 1, 0); row <= J + future_; ++row)
     driven_.put_into(row, {ring_->row(row), size});
+  std::pair<int, int> made{0, 0};  // what predicted_ has: points, and the time of its row
   for (const Unknowns& unknowns : p.unknowns) {
     for (const int place : unknowns.places) ring_->low(J + unknowns.time)[place] = 0;
     // Starting rows hold the fields; multipliers and inner nodes are known from the slabs that were solved.
@@ -286,17 +285,16 @@ void SlabStepper::predict(const Parity& p, std::int64_t J, int most) {
     // Whole rows at once: what else lies in them costs less than to leave it out.
     const SectionView rows = ring_->view();
     const int newest_row = rows.index(J + unknowns.time);
-    double weight = points;
     const bool uniform = system_.times()->uniform();
-    if (!uniform) weight = weight_of_past(J + unknowns.time, 1, points);
-    const double* past = rows.beside(newest_row, -1);
-    for (std::size_t at = 0; at < size; ++at) predicted_[at] = weight * past[at];
-    for (int m = 2; m <= points; ++m) {
+    double weight = -1;
+    for (int m = 1; m <= points && made != std::pair{points, unknowns.time}; ++m) {
       weight =
           uniform ? weight * -static_cast<double>(points - m + 1) / m : weight_of_past(J + unknowns.time, m, points);
-      past = rows.beside(newest_row, -m);
+      const double* const past = rows.beside(newest_row, -m);
+      if (m == 1) std::ranges::fill(predicted_, 0.0);
       for (std::size_t at = 0; at < size; ++at) predicted_[at] += weight * past[at];
     }
+    made = {points, unknowns.time};
     double* const row = ring_->row(J + unknowns.time);
     for (const int place : unknowns.places) row[place] = predicted_[place];
   }
@@ -330,23 +328,37 @@ void SlabStepper::fail(std::int64_t J, const std::string& why, std::string remed
 
 /// y −= change
 void SlabStepper::take_change(const std::vector<Unknowns>& lists, std::int64_t J, NewtonProgress& at) {
-  Pack most_change(0.0), most_y(0.0), most_asked(0.0);
+  Pack changes(0.0), values(0.0), asked_values(0.0);
+  double most_change = 0, most_y = 0, most_asked = 0;
   for (const Unknowns& unknowns : lists) {
     double *const row = ring_->row(J + unknowns.time), *const low = ring_->low(J + unknowns.time);
     // Multipliers are not asked: they have no scale of their own, and converge with what they act on.
     const bool asked = unknowns.role != Role::multiplier;
-    for (std::size_t i = 0; i < unknowns.places.size(); i += lanes) {
+    const std::size_t size = unknowns.places.size(), whole = size / lanes * lanes;
+    for (std::size_t i = 0; i < whole; i += lanes) {
       const Pack by = gather(change_.data(), unknowns.numbers.data() + i);
       Pack y = gather(row, unknowns.places.data() + i), rest = gather(low, unknowns.places.data() + i);
       add_exactly(y, rest, -by);
       scatter(y, row, unknowns.places.data() + i), scatter(rest, low, unknowns.places.data() + i);
-      most_y = largest_magnitude(most_y, y);
-      if (asked) most_change = largest_magnitude(most_change, by), most_asked = largest_magnitude(most_asked, y);
+      values = largest_magnitude(values, y);
+      if (asked) changes = largest_magnitude(changes, by), asked_values = largest_magnitude(asked_values, y);
+    }
+    for (std::size_t i = whole; i < size; ++i) {  // all of mechanics
+      const int place = unknowns.places[i];
+      const double by = change_[unknowns.numbers[i]];
+      add_exactly(row[place], low[place], -by);
+      most_y = larger_or_nan(std::abs(row[place]), most_y);
+      if (!asked) continue;
+      most_change = larger_or_nan(std::abs(by), most_change);
+      most_asked = larger_or_nan(std::abs(row[place]), most_asked);
     }
   }
-  at.finite = !overflowed(max_or_nan(most_y));
+  most_y = larger_or_nan(max_or_nan(values), most_y);
+  most_change = larger_or_nan(max_or_nan(changes), most_change);
+  most_asked = larger_or_nan(max_or_nan(asked_values), most_asked);
+  at.finite = !overflowed(most_y);
   // A field that passes through zero has the scale that it had before.
-  at.take(max_or_nan(most_change), std::max({largest_[0], largest_[1], max_or_nan(most_asked)}));
+  at.take(most_change, std::max({largest_[0], largest_[1], most_asked}));
 }
 
 /// The equations of a slab as Newton's method takes them, at the values in the section, with the matrix that the solver has.

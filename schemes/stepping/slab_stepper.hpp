@@ -49,8 +49,7 @@ class SlabStepper final : public StepMethod {
   struct Unknowns {
     int time;  ///< of their row, from J
     Role role;
-    /// Of the slab, and site·C + component. Packs are whole: what the last one has too much repeats the last unknown.
-    std::vector<int> numbers, places;
+    std::vector<int> numbers, places;  ///< of the slab, and site·C + component
     bool field() const { return role == Role::field; }
   };
   enum class Matrix { none, constant, jacobian };

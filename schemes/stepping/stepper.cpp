@@ -22,6 +22,8 @@ std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan&
     if (auto stepper = KickStepper::make(system, plan, options)) return stepper;
     return std::make_unique<SlabStepper>(system, plan, options);
   }
+  if (system.lattice().space() == Space::point)
+    if (auto stepper = KickStepper::make(system, plan, options)) return stepper;
   const bool has_own_walls = std::ranges::any_of(system.families(), [](const auto& family) {
     const Placement at = family->pattern().placement;
     return (at == Placement::left_wall || at == Placement::right_wall) && !family->made_of();

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "lattice/error.hpp"
-#include "lattice/index.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/stability/linear_stability.hpp"
 #include "schemes/stepping/evolution.hpp"
@@ -30,9 +29,8 @@ class EngineEntry final : public StartedEntry {
         initial_(scene_),
         simulation_(build()),
         at_once_(std::clamp<std::int64_t>(20000 / scene_.problem.lattice.sites(), 1, most_at_once)) {
-    EngineEntry::restart();
+    initial_.start(simulation_);
   }
-  void restart() override { initial_.start(simulation_); }
   std::int64_t newest() const override { return simulation_.newest(); }
   void advance(std::int64_t steps, const RunLimit& limit) override {
     // steps between two looks at the limit take some 0.1 s at most
@@ -61,12 +59,6 @@ class EngineEntry final : public StartedEntry {
   // those of a pass; an explicit step is one, an implicit one as many as it has iterations
   double forces() const override {
     return forces_in_a_pass(simulation_.evolution().system()) * std::max(1, simulation_.iterations());
-  }
-
-  // beside the rows of the engine, those that it starts from
-  std::size_t bytes() const override {
-    const std::size_t row = at(scene_.problem.lattice.sites()) * simulation_.components().size() * sizeof(double);
-    return simulation_.bytes() + 4 * row;
   }
 
  private:

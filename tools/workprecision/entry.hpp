@@ -29,11 +29,9 @@ Lattice lattice_of(const Scene&, int sites);
 class StartedEntry {
  public:
   virtual ~StartedEntry() = default;
-  /// Back to its first rows.
-  virtual void restart() = 0;
   /// Index of its newest row.
   virtual std::int64_t newest() const = 0;
-  /// So many steps more, or fewer if the limit is reached: nothing but newest() and restart() is to be called then.
+  /// So many steps more, or fewer if the limit is reached: nothing but newest() is to be called then.
   /// Throws NumericalFailure.
   virtual void advance(std::int64_t steps, const RunLimit&) = 0;
   /// The fields of the newest row: out[i·d + a].
@@ -44,8 +42,6 @@ class StartedEntry {
   virtual double energy() const = 0;
   /// Evaluations of the force at each site in the last step; not a number if that is not known.
   virtual double forces() const = 0;
-  /// The memory that it holds, nearly.
-  virtual std::size_t bytes() const = 0;
 };
 
 /// A scheme of the engine, or another program, that can run the scene at any resolution.

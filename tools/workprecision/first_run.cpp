@@ -37,8 +37,7 @@ TriedRun run_once(const Scene& scene, const std::vector<WorkPrecisionEntry>& ent
                   .steps = r.steps}};
   WorkPrecisionRun& run = tried.result;
   const double begin = clock.now();
-  tried.started = entry.start(r);
-  const auto& started = tried.started;
+  const auto started = entry.start(r);
   run.seconds_setup = clock.since(begin);
   if (started->newest() >= r.steps - 1) throw BadInput("run.until", "too few steps to be timed");
 
@@ -50,7 +49,8 @@ TriedRun run_once(const Scene& scene, const std::vector<WorkPrecisionEntry>& ent
     const double from = clock.now();
     started->advance(row - started->newest(), limit);
     seconds += clock.since(from);
-    if (started->newest() != row) return false;
+    tried.newest = started->newest();
+    if (tried.newest != row) return false;
     const double error = std::abs(started->energy() - energy0) / std::abs(energy0);
     if (!(error <= largest)) largest = error;
     forces += started->forces(), ++looked_at;

@@ -51,11 +51,6 @@ double potential(const WaveEquation& e, double phi) {
 /// A program of the peers, from the first values and rates of a scene on.
 class PeerEntry : public StartedEntry {
  public:
-  void restart() override {
-    peer_->start(first_, first_t_);
-    peer_->advance(h_, 0);  // a processor is no step
-    newest_ = 0;
-  }
   std::int64_t newest() const override { return newest_; }
   void advance(std::int64_t steps, const RunLimit& limit) override {
     // in one call, unless it takes so long that Ctrl-C would have to wait
@@ -70,21 +65,19 @@ class PeerEntry : public StartedEntry {
     for (const double v : out)
       if (!std::isfinite(v)) throw NotFinite("the field is no longer finite");
   }
-  // a program holds about as many rows as are held here
-  std::size_t bytes() const override { return 8 * first_.size() * sizeof(double); }
 
  protected:
   PeerEntry(const Scene& scene, const Lattice& lattice, double h, std::int64_t most_in_a_call)
       : h_(h), most_in_a_call_(most_in_a_call) {
     const auto state = make_state(scene.initial, lattice);
-    for (std::vector<double>* row : {&phi_, &phi_t_, &first_, &first_t_})
-      row->resize(lattice.sites() * state->components());
-    state->values(0, lattice, first_);
-    state->velocities(0, lattice, first_t_);
+    for (std::vector<double>* row : {&phi_, &phi_t_}) row->resize(lattice.sites() * state->components());
+    state->values(0, lattice, phi_);
+    state->velocities(0, lattice, phi_t_);
   }
   void start(std::unique_ptr<peers::Peer> peer) {
     peer_ = std::move(peer);
-    PeerEntry::restart();
+    peer_->start(phi_, phi_t_);
+    peer_->advance(h_, 0);  // a processor is no step
   }
   /// Values and rates of the newest row, phi_ and phi_t_.
   void fetch() const { peer_->copy(phi_, phi_t_); }
@@ -94,7 +87,6 @@ class PeerEntry : public StartedEntry {
  private:
   double h_;
   std::int64_t most_in_a_call_, newest_ = 0;
-  std::vector<double> first_, first_t_;
   std::unique_ptr<peers::Peer> peer_;
 };
 

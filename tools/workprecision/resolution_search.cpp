@@ -27,8 +27,7 @@ constexpr double share_of_one = 0.25;  // of the time: the most that one run may
 constexpr double clearly = 0.7;
 constexpr double hopelessly = 0.03;
 constexpr double falling = 0.85;
-constexpr double unstable = 10;                            // times the field
-constexpr std::size_t most_held = std::size_t{128} << 20;  // bytes of the runs that wait to be timed
+constexpr double unstable = 10;  // times the field
 constexpr double unknown = WorkPrecisionRun::unknown;
 constexpr double hardly_better = 1.1;  // rounding at the floor is no progress
 
@@ -173,16 +172,13 @@ void ResolutionSearch::attempt(const Next& next) {
     if (!std::isfinite(tried.result.seconds)) {
       out_of_time_ = true;
       return failed(fmt::format("stopped after {:.2g} s at row {} of {}, N = {}: raise workprecision.budget",
-                                clock.since(begin), tried.started->newest(), r.steps, r.sites));
+                                clock.since(begin), tried.newest, r.steps, r.sites));
     }
     if (!std::isfinite(tried.result.error_linf)) {
       failed("the field is no longer finite");
       return retry(next, r, clock.since(begin));
     }
     tried_.push_back(std::move(tried));
-    for (TriedRun& run : tried_)
-      if (run.entry == next.entry && run.started && !worth(run)) run.started.reset();
-    make_room();
     if (!next.sites) refine(next, tried_.back().result);
   } catch (const BadInput& error) {
     failed(error.what());
@@ -196,17 +192,6 @@ void ResolutionSearch::attempt(const Next& next) {
     failed(fmt::format("out of memory at N = {}", r.sites));
   } catch (const std::length_error&) {
     failed(fmt::format("out of memory at N = {}", r.sites));
-  }
-}
-
-void ResolutionSearch::make_room() {
-  std::size_t held = 0;
-  for (const TriedRun& run : tried_) held += run.started ? run.started->bytes() : 0;
-  while (held > most_held) {
-    const auto largest = std::ranges::max_element(
-        tried_, {}, [](const TriedRun& run) { return run.started ? run.started->bytes() : 0; });
-    held -= largest->started->bytes();
-    largest->started.reset();
   }
 }
 

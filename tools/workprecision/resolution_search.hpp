@@ -2,7 +2,6 @@
 #pragma once
 #include <chrono>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,8 +16,7 @@ struct TriedRun {
   std::size_t entry;
   Resolution resolution;
   WorkPrecisionRun result;  ///< its seconds are those of this first run
-  /// Held while the run is worth timing, since to build it may cost more than its steps; null if there is no room for it.
-  std::shared_ptr<StartedEntry> started = {};
+  std::int64_t newest = 0;  ///< row that it got to
 };
 
 /// Runs each entry once at the resolutions that a request names, or at those that turn out to matter:
@@ -67,8 +65,6 @@ class ResolutionSearch {
   void attempt(const Next&);
   void refine(const Next&, const WorkPrecisionRun&);
   void push(const Next&);
-  /// Lets the largest go until the others take no more memory than they may together.
-  void make_room();
   /// Another run of the scheme, as accurate, took less than this share of the seconds.
   bool worth(const TriedRun&) const;
   bool beaten(const TriedRun&, double share) const;

@@ -55,9 +55,7 @@ void time_in_turn(std::vector<TriedRun>& runs, const std::vector<WorkPrecisionEn
     std::ranges::shuffle(order, random);
     for (const std::size_t i : order) {
       if (limit.reached()) break;
-      std::shared_ptr<StartedEntry> started = runs[i].started;
-      if (started) started->restart();
-      else started = entries[runs[i].entry].start(runs[i].resolution);
+      const auto started = entries[runs[i].entry].start(runs[i].resolution);
       const double from = clock.now();
       started->advance(runs[i].resolution.steps - started->newest(), limit);
       const double taken = clock.since(from);

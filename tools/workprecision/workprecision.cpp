@@ -90,7 +90,7 @@ WorkPrecisionOutcome compare_schemes(const Scene& scene, const WorkPrecisionRequ
 
   std::vector<TriedRun> runs = search.worth_timing();
   std::vector<double> costs;
-  for (const TriedRun& run : runs) costs.push_back(run.result.seconds + (run.started ? 0 : run.result.seconds_setup));
+  for (const TriedRun& run : runs) costs.push_back(run.result.seconds + run.result.seconds_setup);
   const std::vector<int> repeats = shared_repeats(costs, request.repeats, request.budget - seconds_since(begin));
   time_in_turn(runs, schemes, repeats, request.seed, StepClock(scene.problem.threads), after(begin, request.budget),
                tell);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "lattice/space/mesh_refinement.hpp"
 #include "tests/catch.hpp"
@@ -56,6 +57,19 @@ TEST_CASE("parts of a boundary stay parts of it where a mesh is refined") {
   }
   fine.parts[0].sides.push_back({0, 1});  // the check can fail
   CHECK(held(fine, false, {{"left", true}}).size() == 6);
+}
+
+TEST_CASE("points of a sphere are numbered along rows: most have their neighbours where the next point has its own") {
+  const Mesh sphere = icosahedral_sphere(5);
+  std::vector<std::set<int>> apart(sphere.points.size());
+  for (int c = 0; c < sphere.cells(); ++c)
+    for (const int i : sphere.cell(c))
+      for (const int j : sphere.cell(c)) apart[i].insert(j - i);
+  int alike = 0;
+  for (std::size_t i = 1; i < apart.size(); ++i) alike += apart[i] == apart[i - 1] ? 1 : 0;
+  CHECK(sphere.points.size() == 10242);
+  CHECK(std::ranges::none_of(apart, &std::set<int>::empty));
+  CHECK(alike > 0.8 * static_cast<double>(apart.size()));
 }
 
 TEST_CASE("generated meshes are sound, and fill their space") {

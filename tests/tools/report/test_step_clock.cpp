@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "tools/report/step_clock.hpp"
-
 #include <chrono>
 #include <limits>
+#include <memory>
 #include <thread>
 
 #include "tests/catch.hpp"
+#include "tools/report/step_clock.hpp"
 #include "tools/workprecision/lower_envelope.hpp"
 #include "tools/workprecision/run_limit.hpp"
 #include "tools/workprecision/timed_rounds.hpp"
@@ -25,9 +25,8 @@ void work(double seconds) {
 }
 
 // Each step waits for the machine and then works for a tenth of that.
-struct Waiting final : StartedEntry {
+struct Waiting : StartedEntry {
   std::int64_t newest_ = 0;
-  void restart() override { newest_ = 0; }
   std::int64_t newest() const override { return newest_; }
   void advance(std::int64_t steps, const RunLimit& limit) override {
     for (; steps > 0 && !limit.reached(); --steps, ++newest_) wait(), work(0.1 * waiting);
@@ -35,15 +34,17 @@ struct Waiting final : StartedEntry {
   void copy(std::span<double>) const override {}
   double energy() const override { return 1; }
   double forces() const override { return 1; }
-  std::size_t bytes() const override { return 0; }
 };
 
-std::vector<TriedRun> waiting_run(std::int64_t steps) {
+std::vector<TriedRun> run_of(std::int64_t steps) {
   std::vector<TriedRun> runs(1);
+  runs[0].entry = 0;
   runs[0].resolution.steps = steps;
-  runs[0].started = std::make_shared<Waiting>();
   return runs;
 }
+
+const std::vector<WorkPrecisionEntry> waits{
+    {.name = "waits", .start = [](const Resolution&) { return std::make_unique<Waiting>(); }}};
 
 }  // namespace
 
@@ -59,21 +60,19 @@ TEST_CASE("steps cost what they have of the processor, and where threads share t
 
 TEST_CASE("rounds count no time in which the machine does something else") {
   const auto late = std::chrono::steady_clock::now() + std::chrono::minutes(5);
-  std::vector<TriedRun> runs = waiting_run(2);
-  time_in_turn(runs, {}, {3}, 1, StepClock(1), late, [] {});
+  std::vector<TriedRun> runs = run_of(2);
+  time_in_turn(runs, waits, {3}, 1, StepClock(1), late, [] {});
   CHECK(runs[0].result.repeats == 3);
   CHECK(runs[0].result.seconds >= 0.2 * waiting);
   CHECK(runs[0].result.seconds < 1.2 * waiting);
   // the clock of the wall counts it
-  time_in_turn(runs, {}, {1}, 1, StepClock(2), late, [] {});
+  time_in_turn(runs, waits, {1}, 1, StepClock(2), late, [] {});
   CHECK(runs[0].result.seconds >= 2 * waiting);
 }
 
-TEST_CASE("a run that is not held is built anew, untimed, whenever it is timed") {
+TEST_CASE("a run is built anew, untimed, whenever it is timed") {
   const auto late = std::chrono::steady_clock::now() + std::chrono::minutes(5);
-  std::vector<TriedRun> runs = waiting_run(2);
-  runs[0].entry = 0;
-  runs[0].started = nullptr;
+  std::vector<TriedRun> runs = run_of(2);
   int built = 0;
   std::vector<WorkPrecisionEntry> entries(1);
   entries[0].start = [&](const Resolution&) {
@@ -84,17 +83,24 @@ TEST_CASE("a run that is not held is built anew, untimed, whenever it is timed")
   CHECK(built == 3);
   CHECK(runs[0].result.repeats == 3);
   CHECK(runs[0].result.seconds < 1.2 * waiting);
-  CHECK_FALSE(runs[0].started);
 }
 
 TEST_CASE("a run ends at its limit, of time that passes or of the processor's") {
   const auto now = [] { return std::chrono::steady_clock::now(); };
-  std::vector<TriedRun> runs = waiting_run(1000000);
+  std::vector<TriedRun> runs = run_of(1000000);
+  std::int64_t newest = 0;
+  struct Noted final : Waiting {
+    std::int64_t& to;
+    explicit Noted(std::int64_t& of) : to(of) {}
+    ~Noted() override { to = newest_; }
+  };
+  const std::vector<WorkPrecisionEntry> noted{
+      {.name = "noted", .start = [&](const Resolution&) { return std::make_unique<Noted>(newest); }}};
   const auto begin = now();
-  time_in_turn(runs, {}, {2}, 1, StepClock(1), begin + std::chrono::milliseconds(100), [] {});
+  time_in_turn(runs, noted, {2}, 1, StepClock(1), begin + std::chrono::milliseconds(100), [] {});
   CHECK(runs[0].result.repeats == 0);  // it was not timed to its end
-  CHECK(runs[0].started->newest() > 0);
-  CHECK(runs[0].started->newest() < 1000);
+  CHECK(newest > 0);
+  CHECK(newest < 1000);
 
   const RunLimit never(now() + std::chrono::hours(1)), processor(now() + std::chrono::hours(1), 0.5 * waiting);
   wait();

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <numeric>
 
 #include "tests/catch.hpp"
+#include "tests/tools/program.hpp"
 #include "tools/compare/solution_error.hpp"
 #include "tools/scene/lists.hpp"
 #include "tools/workprecision/lower_envelope.hpp"
+#include "tools/workprecision/resolution_search.hpp"
 #include "tools/workprecision/timed_rounds.hpp"
 
 using namespace delf;
+using testing::Folder;
 
 namespace {
 
@@ -144,6 +150,42 @@ TEST_CASE("repeats are shared so that the longest runs have the fewest, and each
   CHECK(n == std::vector<int>{5, 5, 4, 1});
   CHECK(shared_repeats(costs, 5, 0.1) == std::vector<int>{1, 1, 1, 1});
   CHECK(shared_repeats({}, 5, 1).empty());
+}
+
+TEST_CASE("an entry is there while it runs alone, whatever the grid") {
+  static int alive = 0, most = 0, built = 0;
+  struct Counted final : StartedEntry {
+    std::int64_t row = 0;
+    Counted() { ++built, most = std::max(most, ++alive); }
+    ~Counted() override { --alive; }
+    std::int64_t newest() const override { return row; }
+    void advance(std::int64_t steps, const RunLimit&) override { row += steps; }
+    void copy(std::span<double> out) const override { std::ranges::fill(out, 0.0); }
+    double energy() const override { return 1; }
+    double forces() const override { return 1; }
+  };
+  const Folder folder;
+  const Scene scene = read_scene(folder.write("kink.ini",
+                                              "[theory]\nname = sine-gordon\n[lattice]\nlength = 40\nsites = 64\n"
+                                              "courant = 0.5\n[initial]\nstate = kink\n[run]\nuntil = 4\n"),
+                                 {});
+  const std::vector<WorkPrecisionEntry> entries(
+      3, {.name = "counted", .start = [](const Resolution&) { return std::make_unique<Counted>(); }});
+  WorkPrecisionRequest request;
+  request.sites = {64, 96, 128}, request.courants = {0.25, 0.5}, request.until = 4;
+  const auto none = [] {};
+  const auto until = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  const ComparedSolution solution = ComparedSolution::exact(scene, request.until);
+  ResolutionSearch search(scene, request, entries, solution);
+  search.run(until, none);
+  CHECK(built == 18);
+  std::vector<TriedRun> runs = search.worth_timing();
+  REQUIRE(runs.size() == 18);
+  CHECK(alive == 0);
+  time_in_turn(runs, entries, std::vector<int>(18, 2), 1, StepClock(1), until, none);
+  CHECK(built == 3 * 18);
+  CHECK(runs.front().result.repeats == 2);
+  CHECK(most == 1);
 }
 
 TEST_CASE("names are apart at commas outside parentheses") {
