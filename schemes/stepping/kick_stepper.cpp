@@ -40,9 +40,13 @@ int place_number(const StencilFamily& family) {
 
 /// What a slab's families add up to, node by node, while they are read.
 struct KickStepper::Parts {
+  struct Entry {
+    int row, column;
+    double value;
+  };
   int fields, nodes, sites, padded;
-  std::vector<std::map<std::pair<int, int>, double>> entries;  ///< [node]: of K
-  std::vector<std::vector<double>> constant, mass;             ///< [node][place]
+  std::vector<std::vector<Entry>> entries;          ///< [node]: of K
+  std::vector<std::vector<double>> constant, mass;  ///< [node][place]
   std::vector<std::vector<Source>> sources;
 
   Parts(int d, int S, int N)
@@ -68,6 +72,8 @@ struct KickStepper::Parts {
             system.is_held(site, component)};
   }
   bool add(const LatticeSystem&, const StencilFamily&, int anchor, const std::vector<Value>&);
+  /// Sorts entries by row and column, and adds those of one place up in the order in which they came.
+  static void collect(std::vector<Entry>&);
   bool add_sources(const LatticeSystem&, const StencilFamily&, int anchor, const std::vector<Value>&,
                    std::map<std::pair<int, int>, std::size_t>& known);
   Source new_source(const LatticeSystem&, const StencilFamily&, int group) const;
@@ -98,12 +104,23 @@ bool KickStepper::Parts::add(const LatticeSystem& system, const StencilFamily& f
       if (J == 0) continue;
       if (u.node == v.node) {
         if (const double K = others->J[i * n + m] / longer; std::abs(K) > tiny * std::abs(J))
-          entries[v.node][{v.place, u.place}] += K;
+          entries[v.node].push_back({v.place, u.place, K});
       } else if (u.place != v.place || std::abs(u.node - v.node) != 1) return false;
       else if (u.node > v.node) mass[v.node][v.place] -= J;
     }
   }
   return true;
+}
+
+void KickStepper::Parts::collect(std::vector<Entry>& all) {
+  std::ranges::stable_sort(all, {}, [](const Entry& e) { return std::pair(e.row, e.column); });
+  auto last = all.begin();
+  for (auto next = last; next != all.end(); ++next) {
+    if (next == all.begin()) continue;
+    if (next->row == last->row && next->column == last->column) last->value += next->value;
+    else *++last = *next;
+  }
+  if (!all.empty()) all.erase(last + 1, all.end());
 }
 
 KickStepper::Source KickStepper::Parts::new_source(const LatticeSystem& system, const StencilFamily& family,
@@ -177,10 +194,10 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
 /// The kick of some nodes that are one: of the slab below and the slab above a row.
 KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const {
   Kick kick;
-  std::map<std::pair<int, int>, double> K;
+  std::vector<Entry> K;
   kick.constant.assign(fields * padded / lanes, Pack(0.0));
   for (const int node : of) {
-    for (const auto& [place, value] : entries[node]) K[place] += value;
+    K.insert(K.end(), entries[node].begin(), entries[node].end());
     for (int n = 0; n < fields * padded; ++n) numbers(kick.constant)[n] += constant[node][n];
     for (const Source& source : sources[node]) {
       // The functions of a family are those of its density, whatever the group.
@@ -191,19 +208,20 @@ KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const 
     }
   }
   for (Source& source : kick.sources) keep_some(source);
+  collect(K);
   auto next = K.begin();
   for (int pack = 0; pack < fields * padded; pack += lanes) {
     const auto begin = static_cast<int>(kick.value.size());
     kick.first.push_back(begin);
     for (int lane = 0; lane < lanes; ++lane)
-      for (int e = begin; next != K.end() && next->first.first == pack + lane; ++next, ++e) {
+      for (int e = begin; next != K.end() && next->row == pack + lane; ++next, ++e) {
         if (e == static_cast<int>(kick.value.size())) {
           kick.value.emplace_back(0.0);
           kick.column.insert(kick.column.end(), at(lanes),
                              pack);  // rows with fewer entries read a value and take nothing of it
         }
-        kick.column[e * lanes + lane] = next->first.second;
-        numbers(kick.value)[e * lanes + lane] = next->second;
+        kick.column[e * lanes + lane] = next->column;
+        numbers(kick.value)[e * lanes + lane] = next->value;
       }
   }
   kick.first.push_back(static_cast<std::int32_t>(kick.value.size()));
@@ -250,6 +268,7 @@ std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const
         return nullptr;
     }
   }
+  for (auto& entries : parts.entries) Parts::collect(entries);
   for (const auto& mass : parts.mass)
     for (int i = 0; i < N; ++i)
       for (int a = 0; a < d; ++a)
