@@ -178,12 +178,10 @@ std::int64_t Verification::steps_of_run() const {
   Simulation simulation = build(scene_, winding_);
   try {
     initial_->start(simulation);
-    while (!scene_.is_over(simulation.newest(), simulation.time(simulation.newest())) && !Interrupt::asked())
-      simulation.step();
-  } catch (const NumericalFailure&) {  // which the rows that are checked will meet again
-    return simulation.newest() + 1;
+  } catch (const NumericalFailure&) {
+    return 1;
   }
-  return simulation.newest();
+  return delf::steps_of_run(scene_, simulation);
 }
 
 void Verification::choose_moments() {
