@@ -30,6 +30,7 @@
 #include "tools/report/interrupt.hpp"
 #include "tools/report/seconds_since.hpp"
 #include "tools/scene/values.hpp"
+#include "tools/verify/energy_history.hpp"
 #include "tools/verify/further_runs.hpp"
 #include "tools/verify/verdict.hpp"
 #include "tools/verify/verify.hpp"
@@ -64,10 +65,7 @@ class MeshVerification {
     if (first_step_.samples > 0) verdict_.checks.push_back(first_step_);
     if (scene_.theory->constraint() && !scene_.scene.problem.time_steps.empty())
       verdict_.left_out.push_back("form of the first step: not for theories with a constraint");
-    if (scene_.step_control())
-      verdict_.left_out.push_back(
-          "symplecticity: the forms here are of steps as given; with steps chosen by the field the map of rows is "
-          "reversible, not symplectic, and its energy is what is measured");
+    if (scene_.step_control()) verdict_.left_out.emplace_back(not_symplectic);
     std::vector<std::string> elsewhere{"rectangles, staircases and slabs of a lattice",
                                        "balances of energy and momentum"};
     if (scene_.time != MeshTime::rows) elsewhere.emplace_back("time reversal without rows");
@@ -246,12 +244,13 @@ class MeshVerification {
     Window held = system.window(0, newest_two().rows, 0);
     first_rows_ = held.rows;
     const bool own_steps = usual && !times.uniform();
-    const double first_energy = own_steps ? energy(held) : 0;
+    std::optional<EnergyChange> change;  // the energy is no sum that vanishes where steps differ
+    if (own_steps) change.emplace(energy(held), 0);
     int moment = 0;
     while (simulation.newest() < steps && !Interrupt::asked()) {
       simulation.step();
       const std::int64_t newest = simulation.newest();
-      if (own_steps) measure_energy(energy(newest_two()), first_energy, newest);
+      if (change) change->add(energy(newest_two()), newest);
       const auto last_of = [&](int m) { return std::max<std::int64_t>(count - 1, steps * (m + 1) / moments_); };
       if (newest > last_of(moment) - count + 1) keep(newest_two(), count, held);
       if (newest < last_of(moment)) continue;
@@ -259,7 +258,7 @@ class MeshVerification {
       if (own_steps && !scene_.theory->constraint()) look_at_first_step(system, held);
       while (moment < moments_ && last_of(moment) <= newest) ++moment;
     }
-    if (energy_) verdict_.measured.push_back(*energy_);
+    if (change && change->measured().count > 0) verdict_.measured.push_back(change->measured());
     if (Interrupt::asked()) verdict_.status = "interrupted";
   }
 
@@ -286,17 +285,6 @@ class MeshVerification {
               form_of_first_step(system, times, rows.rows, checks_.random(), checks_.fault() == "variation"), where) &&
           !first_step_.passed())
         first_step_.failure = "the 2-form of the last two rows is not that of the first two";
-  }
-
-  /// The energy is no sum that vanishes where steps differ.
-  void measure_energy(double energy, double first, std::int64_t row) {
-    if (!energy_) {
-      energy_.emplace();
-      energy_->name = "change of the energy", energy_->normaliser = std::abs(first);
-    }
-    const double change = first == 0 ? 0 : std::abs(energy - first) / std::abs(first);
-    if (++energy_->count == 1 || worse(change, energy_->value))
-      energy_->value = change, energy_->region = fmt::format("row {}, relative to row 0", row);
   }
 
   std::int64_t rows_of_run() const {
@@ -336,7 +324,6 @@ class MeshVerification {
   int moments_;
   double tolerance_;
   Check order_, first_step_;
-  std::optional<Measured> energy_;
   std::vector<std::vector<double>> first_rows_;  ///< of rows that are made here
   Verdict verdict_;
 };
