@@ -41,44 +41,14 @@ struct CellSpace : MeshSpace {
   std::vector<double> masses;  ///< A_i
 };
 
-/// The potential of a mesh on rows of a complex, whose stencils have the measure of their row,
+/// The mesh alone, for problems without time, by the families of rows (schemes/families/mesh_families.hpp),
 ///
-///     Σ_i A_i V(φ_i) + Σ_cells [V(φ, ∇φ) − V(φ, 0)] + Σ_i f_i φ_i,
+///     S = Σ_i A_i V(φ_i) + Σ_cells [V(φ, ∇φ) − V(φ, 0)] + Σ_i f_i φ_i,
 ///
-/// f being what flows in at the boundary, and with constraints A_i Σ_m λ_im G_m(φ_i) besides. Then every value is a site of the
-/// complex of its own, since equations of one point are not matched with its own unknowns. A row has the sites of the fields,
-/// point by point, and behind them those of the multipliers, where there are any.
-class PotentialRows {
- public:
-  /// `weights`: the λ_i G have A_i, and not 1.
-  PotentialRows(const CellSpace&, ComplexSystem&, bool weights);
-  /// A complex for it: of as many components as its sites have.
-  static ComplexSystem make_complex(const CellSpace& space) {
-    return ComplexSystem(space.constraint ? 1 : space.fields());
-  }
-
-  /// Sites and stencils of one more row; points of the fixed boundary are data.
-  void add(double t, double measure);
-  int per_point() const { return per_point_; }  ///< sites that hold the fields of a point
-  int per_row() const { return per_row_; }
-  /// The point that a site of a row belongs to.
-  int point_of(int site) const;
-  /// The sites that hold the fields of some points in a row, appended.
-  void append_sites(int row, std::span<const std::int32_t> points, std::vector<int>& sites) const;
-
- private:
-  const CellSpace& space_;
-  ComplexSystem& system_;
-  bool weights_;
-  int per_point_, per_row_, rows_ = 0;
-  int site_ = 0, constraint_ = 0;     ///< families
-  std::vector<int> flux_;             ///< families of ℓ = φ_a, by field
-  std::vector<int> gradient_;         ///< the family of each cell
-  std::vector<int> gradient_tables_;  ///< of each cell
-};
-
-/// The mesh alone, for problems without time: S = Σ V(φ), data on the fixed boundary. The line search weighs G against
-/// forces, which do not shrink with the mesh: constraints have no A_i.
+/// f being what flows in at the boundary, and with constraints Σ_i Σ_m λ_im G_m(φ_i) besides: the line search weighs G against
+/// forces, which do not shrink with the mesh. Points of the fixed boundary are data. With constraints every value is a site of the
+/// complex of its own, since equations of one point are not matched with its own unknowns: those of the fields, point by point, and
+/// behind them the multipliers.
 ComplexSystem mesh_complex(const CellSpace&);
 
 }  // namespace delf

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "jets/simd/scratch_rows.hpp"
+#include "jets/tables/density_on_table.hpp"
 #include "lattice/error.hpp"
 #include "lattice/index.hpp"
 #include "lattice/space/mesh_space.hpp"
@@ -31,6 +32,22 @@ std::vector<TablePoint::Entry> place_of(const TablePoint& point) {
   return mean;
 }
 
+/// Which values of a stencil feel each other, [i·size + m].
+std::vector<char> coupled(const StencilTable& table, const BatchDensity& density, int size) {
+  const int d = density.components();
+  std::vector<char> all(at(size) * at(size), 0);
+  for (const TablePoint& point : table.points)
+    for (std::size_t s = 0; s < point.slots.size(); ++s)
+      for (std::size_t r = 0; r < point.slots.size(); ++r)
+        for (const auto& [l, left] : point.slots[s])
+          for (const auto& [m, right] : point.slots[r])
+            for (int a = 0; a < d; ++a)
+              for (int b = 0; b < d; ++b)
+                if (!density.is_zero(static_cast<int>(s) * d + a, static_cast<int>(r) * d + b))
+                  all[at((l * d + a) * size + m * d + b)] = 1;
+  return all;
+}
+
 }  // namespace
 
 ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int vertices,
@@ -38,7 +55,6 @@ ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int v
     : density_(std::move(density)), vertices_(vertices), size_(vertices * density_->components()), form_(form) {
   const int d = density_->components();
   for (int l = 0; l < vertices; ++l) table_.pattern.vertices.push_back({.time = 0, .space = l});
-  coupled_.assign(at(size_) * at(size_), 0);
   // The numbers of a stencil are those of its table, point after point, and the place and the time of each point.
   for (const TablePoint& given : form) {
     TablePoint point{.slots = {}};
@@ -59,15 +75,7 @@ ComplexSystem::Family::Family(std::shared_ptr<const BatchDensity> density, int v
   auto numbers = static_cast<int>(powers_.size());
   for (TablePoint& point : table_.points)
     if (is_placed()) point.own.place = numbers++, point.own.time = numbers++;
-  for (const TablePoint& point : table_.points)
-    for (std::size_t s = 0; s < point.slots.size(); ++s)
-      for (std::size_t r = 0; r < point.slots.size(); ++r)
-        for (const auto& [l, left] : point.slots[s])
-          for (const auto& [m, right] : point.slots[r])
-            for (int a = 0; a < d; ++a)
-              for (int b = 0; b < d; ++b)
-                if (!density_->is_zero(static_cast<int>(s) * d + a, static_cast<int>(r) * d + b))
-                  coupled_[at((l * d + a) * size_ + m * d + b)] = 1;
+  coupled_ = coupled(table_, *density_, size_);
 }
 
 ComplexSystem::Family::Family(std::shared_ptr<const StencilFamily> family)
@@ -75,7 +83,8 @@ ComplexSystem::Family::Family(std::shared_ptr<const StencilFamily> family)
       vertices_(family_->pattern().size()),
       size_(family_->size()),
       reads_time_(family_->is_placed()) {
-  coupled_.assign(at(size_) * at(size_), 1);
+  if (const DensityOnTable* of = family_->made_of()) coupled_ = coupled(of->table, *of->density, size_);
+  else coupled_.assign(at(size_) * at(size_), 1);
 }
 
 ComplexShape ComplexSystem::Family::shape(int values_of_site) const {

@@ -42,9 +42,13 @@ int place_number(const StencilFamily& family) {
 
 /// What a slab's families add up to, node by node, while they are read.
 struct KickStepper::Parts {
+  struct Entry {
+    int row, column;
+    double value;
+  };
   int fields, nodes, sites, padded;
-  std::vector<std::map<std::pair<int, int>, double>> entries;  ///< [node]: of K
-  std::vector<std::vector<double>> constant, mass;             ///< [node][place]
+  std::vector<std::vector<Entry>> entries;          ///< [node]: of K
+  std::vector<std::vector<double>> constant, mass;  ///< [node][place]
   std::vector<std::vector<Source>> sources;
 
   Parts(int d, int S, int N)
@@ -70,6 +74,8 @@ struct KickStepper::Parts {
             system.is_held(site, component)};
   }
   bool add(const LatticeSystem&, const StencilFamily&, int anchor, const std::vector<Value>&);
+  /// Sorts entries by row and column, and adds those of one place up in the order in which they came.
+  static void collect(std::vector<Entry>&);
   bool add_sources(const LatticeSystem&, const StencilFamily&, int anchor, const std::vector<Value>&,
                    std::map<std::pair<int, int>, std::size_t>& known);
   Source new_source(const LatticeSystem&, const StencilFamily&, int group) const;
@@ -101,12 +107,23 @@ bool KickStepper::Parts::add(const LatticeSystem& system, const StencilFamily& f
       const double K = others->J[i * n + m] / longer;
       const bool is_kinetic = std::abs(K) <= tiny * std::abs(J);
       if (u.node == v.node) {
-        if (!is_kinetic) entries[v.node][{v.place, u.place}] += K;
+        if (!is_kinetic) entries[v.node].push_back({v.place, u.place, K});
       } else if (!is_kinetic || u.place != v.place || std::abs(u.node - v.node) != 1) return false;
       else if (u.node > v.node) mass[v.node][v.place] -= J;
     }
   }
   return true;
+}
+
+void KickStepper::Parts::collect(std::vector<Entry>& all) {
+  std::ranges::stable_sort(all, {}, [](const Entry& e) { return std::pair(e.row, e.column); });
+  auto last = all.begin();
+  for (auto next = last; next != all.end(); ++next) {
+    if (next == all.begin()) continue;
+    if (next->row == last->row && next->column == last->column) last->value += next->value;
+    else *++last = *next;
+  }
+  if (!all.empty()) all.erase(last + 1, all.end());
 }
 
 KickStepper::Source KickStepper::Parts::new_source(const LatticeSystem& system, const StencilFamily& family,
@@ -180,10 +197,10 @@ bool KickStepper::Parts::add_sources(const LatticeSystem& system, const StencilF
 /// The kick of some nodes that are one: of the slab below and the slab above a row.
 KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const {
   Kick kick;
-  std::map<std::pair<int, int>, double> K;
+  std::vector<Entry> K;
   kick.constant.assign(fields * padded / lanes, Pack(0.0));
   for (const int node : of) {
-    for (const auto& [place, value] : entries[node]) K[place] += value;
+    K.insert(K.end(), entries[node].begin(), entries[node].end());
     for (int n = 0; n < fields * padded; ++n) numbers(kick.constant)[n] += constant[node][n];
     for (const Source& source : sources[node]) {
       // The functions of a family are those of its density, whatever the group.
@@ -195,13 +212,13 @@ KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const 
   }
   for (Source& source : kick.sources) keep_some(source);
   if (std::ranges::all_of(kick.constant, [](const Pack& c) { return max_or_nan(abs(c)) == 0; })) kick.constant.clear();
+  collect(K);
   auto next = K.begin();
   for (int pack = 0; pack < fields * padded; pack += lanes) {
     kick.first.push_back(static_cast<std::int32_t>(kick.value.size()));
     const auto begin = next;
     std::map<int, int> rows_at;  // rows of the pack with an entry so far from their own place
-    for (; next != K.end() && next->first.first < pack + lanes; ++next)
-      ++rows_at[next->first.second - next->first.first];
+    for (; next != K.end() && next->row < pack + lanes; ++next) ++rows_at[next->column - next->row];
     const auto add = [&](int column) {
       kick.column.push_back(column), kick.value.emplace_back(0.0);
       return static_cast<int>(kick.value.size()) - 1;
@@ -214,15 +231,14 @@ KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const 
     const auto first_listed = static_cast<int>(kick.value.size());
     std::array<int, lanes> used{};
     for (auto entry = begin; entry != next; ++entry) {
-      const auto [row, column] = entry->first;
-      const auto found = entry_at.find(column - row);
-      const int lane = row - pack, e = found != entry_at.end() ? found->second : first_listed + used[lane]++;
+      const auto found = entry_at.find(entry->column - entry->row);
+      const int lane = entry->row - pack, e = found != entry_at.end() ? found->second : first_listed + used[lane]++;
       if (e == static_cast<int>(kick.value.size())) {
         add(~static_cast<int>(kick.listed.size()));
         kick.listed.insert(kick.listed.end(), at(lanes), pack);
       }
-      if (found == entry_at.end()) kick.listed[~kick.column[e] + lane] = column;
-      numbers(kick.value)[e * lanes + lane] = entry->second;
+      if (found == entry_at.end()) kick.listed[~kick.column[e] + lane] = entry->column;
+      numbers(kick.value)[e * lanes + lane] = entry->value;
     }
   }
   kick.first.push_back(static_cast<std::int32_t>(kick.value.size()));
@@ -270,6 +286,7 @@ std::unique_ptr<StepMethod> KickStepper::make(const LatticeSystem& system, const
         return nullptr;
     }
   }
+  for (auto& entries : parts.entries) Parts::collect(entries);
   for (const auto& mass : parts.mass)
     for (int i = 0; i < N; ++i)
       for (int a = 0; a < d; ++a)

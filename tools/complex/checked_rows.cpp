@@ -7,8 +7,10 @@
 #include <memory>
 #include <utility>
 
+#include "jets/tables/space_table.hpp"
 #include "lattice/index.hpp"
 #include "schemes/complex/complex_region.hpp"
+#include "schemes/families/mesh_families.hpp"
 #include "schemes/methods/mesh_rows.hpp"
 #include "schemes/theories/theory_on_space.hpp"
 
@@ -68,12 +70,8 @@ LatticeSystem system_of_rows(const ComplexScene& scene) {
 }
 
 LatticeSystem system_of_field(const ComplexScene& scene) {
-  CellSpace space = *scene.space;
-  space.constraint = nullptr;
-  const ComplexSystem potential = mesh_complex(space);
-  const auto families = potential.row().families();
-  std::vector<std::shared_ptr<const StencilFamily>> all(families.begin(), families.end());
-  std::vector<Component> components = fields(space.fields());
+  auto all = mesh_families(point_space(), scene.space->density, *scene.space);
+  std::vector<Component> components = fields(scene.space->fields());
   if (scene.space->constraint) {
     all.push_back(scene.space->constraint);
     std::ranges::copy(multipliers_of(*scene.theory), std::back_inserter(components));

@@ -30,7 +30,10 @@
 #include "tools/report/interrupt.hpp"
 #include "tools/report/seconds_since.hpp"
 #include "tools/scene/values.hpp"
+#include "tools/verify/energy_history.hpp"
+#include "tools/verify/further_runs.hpp"
 #include "tools/verify/verdict.hpp"
+#include "tools/verify/verify.hpp"
 
 namespace delf {
 namespace {
@@ -39,11 +42,11 @@ namespace {
 class MeshVerification {
  public:
   MeshVerification(const ComplexScene& scene, const Values& values)
-      : scene_(scene), checks_(scene, values), moments_(static_cast<int>(values.integer("verify.moments"))) {
-    const double tolerance = values.real("verify.tolerance");
-    reversal_ = {
-        .name = "time reversal", .region = {}, .tolerance = std::max(tolerance, 100 * scene.scene.problem.tolerance)};
-    first_step_ = {.name = "form of the first step, the last as long", .region = {}, .tolerance = tolerance};
+      : scene_(scene),
+        checks_(scene, values),
+        moments_(static_cast<int>(values.integer("verify.moments"))),
+        tolerance_(values.real("verify.tolerance")) {
+    first_step_ = {.name = "form of the first step, the last as long", .region = {}, .tolerance = tolerance_};
     order_ = {.name = "order of the updates, planned", .region = {}, .tolerance = 0};
     verdict_.seed = scene.scene.initial.seed;
     verdict_.subject = "rows computed here";
@@ -56,21 +59,18 @@ class MeshVerification {
     else if (scene_.is_one_problem()) look_at_field();
     else if (scene_.time == MeshTime::cells) look_at_cells();
     else look_at_rows();
-    verdict_.seconds = seconds_since(begin);
     checks_.add_to(verdict_);
     if (order_.samples > 0) verdict_.checks.push_back(order_);
-    if (reversal_.samples > 0) verdict_.checks.push_back(reversal_);
+    if (!first_rows_.empty() && verdict_.status == "done") reverse();
     if (first_step_.samples > 0) verdict_.checks.push_back(first_step_);
     if (scene_.theory->constraint() && !scene_.scene.problem.time_steps.empty())
       verdict_.left_out.push_back("form of the first step: not for theories with a constraint");
-    if (scene_.step_control())
-      verdict_.left_out.push_back(
-          "symplecticity: the forms here are of steps as given; with steps chosen by the field the map of rows is "
-          "reversible, not symplectic, and its energy is what is measured");
+    if (scene_.step_control()) verdict_.left_out.emplace_back(not_symplectic);
     std::vector<std::string> elsewhere{"rectangles, staircases and slabs of a lattice",
                                        "balances of energy and momentum"};
     if (scene_.time != MeshTime::rows) elsewhere.emplace_back("time reversal without rows");
     for (const std::string& name : elsewhere) verdict_.left_out.push_back(name + ": not applicable to a mesh");
+    verdict_.seconds = seconds_since(begin);
     return std::move(verdict_);
   }
 
@@ -242,15 +242,15 @@ class MeshVerification {
                                times.step(two.first_row), times.time(two.last_row()));
     };
     Window held = system.window(0, newest_two().rows, 0);
-    lengths_ = {times.step(0)};
+    first_rows_ = held.rows;
     const bool own_steps = usual && !times.uniform();
-    const double first_energy = own_steps ? energy(held) : 0;
+    std::optional<EnergyChange> change;  // the energy is no sum that vanishes where steps differ
+    if (own_steps) change.emplace(energy(held), 0);
     int moment = 0;
     while (simulation.newest() < steps && !Interrupt::asked()) {
       simulation.step();
       const std::int64_t newest = simulation.newest();
-      lengths_.push_back(times.step(newest - 1));
-      if (own_steps) measure_energy(energy(newest_two()), first_energy, newest);
+      if (change) change->add(energy(newest_two()), newest);
       const auto last_of = [&](int m) { return std::max<std::int64_t>(count - 1, steps * (m + 1) / moments_); };
       if (newest > last_of(moment) - count + 1) keep(newest_two(), count, held);
       if (newest < last_of(moment)) continue;
@@ -258,10 +258,8 @@ class MeshVerification {
       if (own_steps && !scene_.theory->constraint()) look_at_first_step(system, held);
       while (moment < moments_ && last_of(moment) <= newest) ++moment;
     }
-    if (energy_) verdict_.measured.push_back(*energy_);
-    if (!usual) verdict_.left_out.push_back("time reversal: not for methods of lattices on a mesh");
+    if (change && change->measured().count > 0) verdict_.measured.push_back(change->measured());
     if (Interrupt::asked()) verdict_.status = "interrupted";
-    else if (usual) reverse(simulation);
   }
 
   /// The newest `count` rows; nodes and multipliers of a row are known with the next one.
@@ -289,69 +287,44 @@ class MeshVerification {
         first_step_.failure = "the 2-form of the last two rows is not that of the first two";
   }
 
-  /// The energy is no sum that vanishes where steps differ.
-  void measure_energy(double energy, double first, std::int64_t row) {
-    if (!energy_) {
-      energy_.emplace();
-      energy_->name = "change of the energy", energy_->normaliser = std::abs(first);
-    }
-    const double change = first == 0 ? 0 : std::abs(energy - first) / std::abs(first);
-    if (++energy_->count == 1 || worse(change, energy_->value))
-      energy_->value = change, energy_->region = fmt::format("row {}, relative to row 0", row);
-  }
-
-  // Where the field chooses the steps only a run tells how many there are.
   std::int64_t rows_of_run() const {
     if (!scene_.scene.until) return scene_.scene.steps;
     Simulation simulation(scene_.problem_on_mesh());
     start(scene_, simulation);
-    while (!scene_.scene.is_over(simulation.newest(), simulation.time(simulation.newest())) && !Interrupt::asked())
-      simulation.step();
-    return simulation.newest();
+    return steps_of_run(scene_.scene, simulation);
   }
 
-  // Rows n, n − 1 in exchange, and back to rows 1, 0, by steps as long as those forth; if the field chooses them, by those
-  // that it chooses again.
-  void reverse(const Simulation& forth) {
-    const std::int64_t there = forth.newest(), back = std::min<std::int64_t>(there - 1, 200);
-    Problem problem = scene_.problem_on_mesh();
-    if (forth.evolution().system().families().front()->is_placed())
-      problem = mirrored_in_time(std::move(problem), forth.time(there));
+  /// The problem of a run that begins at time T and goes back, with the boundary and the steps in the reverse order.
+  Problem seen_from(double T) const {
+    Problem problem = mirrored_in_time(scene_.problem_on_mesh(), T);
     if (scene_.boundary_works()) {
       auto space = std::make_shared<MeshSpace>(*scene_.space);
       for (auto* list : {&space->driven, &space->fluxes})
-        for (auto& [point, given] : *list) given = std::make_shared<BackFrom>(forth.time(there), given);
+        for (auto& [point, given] : *list) given = std::make_shared<BackFrom>(T, given);
       problem.lattice = Lattice::on(std::move(space));
     }
-    if (!problem.time_steps.empty()) problem.time_steps.assign(lengths_.rbegin(), lengths_.rend());
-    Simulation again(problem);
-    again.start({forth.evolution().stepper().row(0), forth.evolution().stepper().row(1)}, forth.step_density());
-    for (std::int64_t n = 0; n < back; ++n) again.step();
-    std::vector<double> goal(scene_.values()), reached(goal.size());
-    if (back < there - 1) {  // a long way: over the last steps alone
-      Simulation once_more(scene_.problem_on_mesh());
-      start(scene_, once_more);
-      while (once_more.newest() < there - 1 - back) once_more.step();
-      once_more.copy_row(0, goal);
-    }
-    again.copy_row(0, reached);
-    double distance = 0, size = 0;
-    for (std::size_t n = 0; n < goal.size(); ++n)
-      distance = std::max(distance, std::abs(goal[n] - reached[n])), size = std::max(size, std::abs(goal[n]));
-    // a field that something sets off may begin at rest
-    if (scene_.boundary_works())
-      for (const double phi : forth.evolution().stepper().row(0)) size = std::max(size, std::abs(phi));
-    Balance balance{distance, std::max(size, 1e-300), static_cast<std::int64_t>(goal.size())};
-    reversal_.take(balance, fmt::format("{} steps back", back));
-    if (!reversal_.passed()) reversal_.failure = "the steps back do not retrace the steps forth";
+    if (problem.time_steps.empty()) return problem;
+    const std::vector<double>& in_turn = scene_.scene.problem.time_steps;
+    std::vector<double> back;
+    for (double t = 0; t < T * (1 - 1e-12); t += back.back()) back.push_back(in_turn[back.size() % in_turn.size()]);
+    problem.time_steps.assign(back.rbegin(), back.rend());
+    return problem;
+  }
+
+  void reverse() {
+    const auto fresh = [this](std::optional<double> T) {
+      return std::make_unique<Simulation>(T ? seen_from(*T) : scene_.problem_on_mesh());
+    };
+    reverse_time(scene_.scene, fresh, first_rows_, std::max(tolerance_, 100 * scene_.scene.problem.tolerance),
+                 verdict_);
   }
 
   const ComplexScene& scene_;
   MeshChecks checks_;
   int moments_;
-  Check reversal_, order_, first_step_;
-  std::optional<Measured> energy_;
-  std::vector<double> lengths_;  ///< of the steps
+  double tolerance_;
+  Check order_, first_step_;
+  std::vector<std::vector<double>> first_rows_;  ///< of rows that are made here
   Verdict verdict_;
 };
 
@@ -378,11 +351,7 @@ ExitCode verify(const ComplexScene& c, const std::filesystem::path& folder, cons
   }
   Subject subject = subject_of(c);
   subject.scheme = scheme_in_words(c);
-  make_results_folder(folder);
-  write_text_file(folder / "verify.json", verdict_json(subject, c.scene, verdict));
-  fmt::print("{}{}: verify.json\n", verdict_report(subject, c.scene, verdict), folder.string());
-  if (verdict.status == "interrupted") return ExitCode::interrupted;
-  return verdict.passed() ? ExitCode::done : ExitCode::check_failed;
+  return write_verdict(verdict, subject, c.scene, folder);
 }
 
 }  // namespace delf

@@ -43,7 +43,7 @@ WatchedRows watched_rows(const ComplexScene& c) {
 }  // namespace
 
 MeshStepping::MeshStepping(const ComplexScene& c, Outcome& outcome)
-    : RowLoop(c.scene, outcome, watched_rows(c)),
+    : RowLoop(c.scene, outcome, simulation_, watched_rows(c)),
       c_(c),
       outcome_(outcome),
       simulation_(c.problem_on_mesh()),
@@ -87,10 +87,6 @@ void MeshStepping::make_first_rows() {
   if (c_.boundary_works()) outcome_.conserved.back().take(first.energy - first.work, std::abs(first.energy));
 }
 
-std::optional<double> MeshStepping::own_length() const {
-  return steps().uniform() ? std::nullopt : std::optional(last_step());
-}
-
 void MeshStepping::step(bool looked_at) {
   simulation_.step(looked_at || c_.scene.problem.circle_valued);
   add_work();
@@ -128,9 +124,9 @@ double MeshStepping::energy_of_start() const {
 MeshRow MeshStepping::row(std::int64_t row) {
   const bool is_newest = row >= newest_row(), is_pair = stepper().held() > 1;
   const int back = is_newest ? 0 : 1;
-  const double t = is_newest ? time(newest_row()) : 0;
+  const double t = is_newest ? simulation_.time(newest_row()) : 0;
   simulation_.copy_row(back, values_);
-  MeshRow now{row, t, values_, Outcome::unknown, is_newest ? iterations() : 0, 0, stepper().site_times()};
+  MeshRow now{row, t, values_, Outcome::unknown, is_newest ? simulation_.iterations() : 0, 0, stepper().site_times()};
   std::vector<double> p = stepper().own_momenta();
   const bool has_own = !p.empty();
   if (has_own) now.residual = Outcome::unknown;
@@ -164,7 +160,7 @@ double MeshStepping::energy_of_row(const std::vector<double>& p, double t) {
 double MeshStepping::energy_between() {
   std::vector<double> newest(values_.size());
   simulation_.copy_row(0, newest), simulation_.copy_row(1, before_);
-  return energy_.between(before_, newest, last_step(), time(newest_row()));
+  return energy_.between(before_, newest, last_step(), simulation_.time(newest_row()));
 }
 
 /// The momenta of the fields at the newest row, or the one before it, [i·d + a]: the half of their equations.
@@ -203,7 +199,7 @@ Balance MeshStepping::sum(const LinearSymmetry& symmetry, const std::vector<doub
 
 MeshRow MeshStepping::last_row() {
   start_rows();
-  while (!c_.scene.is_over(newest_row(), time(newest_row())) && !Interrupt::asked()) step(true);
+  while (!c_.scene.is_over(newest_row(), simulation_.time(newest_row())) && !Interrupt::asked()) step(true);
   return row(newest_row());
 }
 

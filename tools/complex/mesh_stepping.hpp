@@ -27,11 +27,7 @@ class MeshStepping final : public RowLoop {
 
  private:
   void make_first_rows() override;
-  std::int64_t newest_row() const override { return simulation_.newest(); }
-  double time(std::int64_t row) const override { return row == 0 ? 0 : simulation_.time(row); }
-  std::optional<double> own_length() const override;
   void step(bool looked_at) override;
-  int iterations() const override { return simulation_.iterations(); }
   void record(std::int64_t row) override;
   void watch() override;
   void visit_rows(SavedState&) override;
@@ -39,6 +35,7 @@ class MeshStepping final : public RowLoop {
 
   const Stepper& stepper() const;
   const RowTimes& steps() const;
+  std::int64_t newest_row() const { return simulation_.newest(); }
   double last_step() const { return steps().step(newest_row() - 1); }
   /// The newest row; or row 0 where that is held still.
   MeshRow row(std::int64_t);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "schemes/stepping/evolution.hpp"
 #include "schemes/stepping/flush_denormals.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/report/failure.hpp"
@@ -49,8 +50,10 @@ bool is_solution(double residual, double tolerance) {
   return residual <= std::max(most, 1e3 * tolerance);
 }
 
-RowLoop::RowLoop(const Scene& scene, Outcome& outcome, const WatchedRows& watched)
-    : scene_(scene), outcome_(outcome), watched_(watched) {}
+RowLoop::RowLoop(const Scene& scene, Outcome& outcome, const Simulation& simulation, const WatchedRows& watched)
+    : scene_(scene), outcome_(outcome), simulation_(simulation), watched_(watched) {}
+
+double RowLoop::time(std::int64_t row) const { return row == 0 ? 0 : simulation_.time(row); }
 
 std::optional<RunFiles::Written> RowLoop::begin(SavedState* checkpoint) {
   if (checkpoint == nullptr) return start(), std::nullopt;
@@ -67,13 +70,14 @@ void RowLoop::start() {
     return fail(error);
   }
   started_ = true;
-  newest_ = newest_row();
+  newest_ = simulation_.newest();
   note_length();
 }
 
 void RowLoop::visit(SavedState& state) {
   started_ = true;  // there are no checkpoints before
   state("newest", newest_), state("recorded", recorded_), state("iterations", iterations_);
+  state("iterations of the last step", last_iterations_);
   visit_rows(state);
   outcome_.visit(state);
 }
@@ -139,7 +143,7 @@ void RowLoop::record_and_step() {
 
 // The rows held are still the last good ones; of steps that were taken together some may be good.
 void RowLoop::fail(const NumericalFailure& error) {
-  if (started_) newest_ = newest_row();
+  if (started_) newest_ = simulation_.newest();
   outcome_.status = status_of(error);
   outcome_.break_time = time(newest_ + 1);
   const std::string what = error.what();
@@ -162,8 +166,9 @@ void RowLoop::step_until(std::int64_t row, Progress& progress) {
     ++newest_;
     ++outcome_.steps_taken;
     note_length();
-    iterations_ += iterations();
-    outcome_.iterations_max = std::max(outcome_.iterations_max, iterations());
+    last_iterations_ = simulation_.iterations();
+    iterations_ += last_iterations_;
+    outcome_.iterations_max = std::max(outcome_.iterations_max, last_iterations_);
     progress.at(newest_);
     if (!watched) continue;
     stopwatch.leave_out([&] { require_result([&] { watch(); }); });
@@ -172,10 +177,11 @@ void RowLoop::step_until(std::int64_t row, Progress& progress) {
 }
 
 void RowLoop::note_length() {
-  const std::optional<double> h = own_length();
-  if (!h) return;
-  outcome_.longest = std::max(outcome_.longest, *h);
-  outcome_.shortest = outcome_.shortest == 0 ? *h : std::min(outcome_.shortest, *h);
+  const RowTimes& times = *simulation_.evolution().system().times();
+  if (times.uniform()) return;
+  const double h = times.step(newest_ - 1);
+  outcome_.longest = std::max(outcome_.longest, h);
+  outcome_.shortest = outcome_.shortest == 0 ? h : std::min(outcome_.shortest, h);
 }
 
 bool RowLoop::is_due(std::int64_t row) const { return scene_.is_recorded(row, newest_, time(newest_)); }

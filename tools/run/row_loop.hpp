@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "schemes/simulation.hpp"
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/progress.hpp"
 #include "tools/run/checkpoints.hpp"
@@ -30,29 +31,24 @@ class RowLoop {
   void run(RunFiles&, Checkpoints&);
 
  protected:
-  RowLoop(const Scene&, Outcome&, const WatchedRows&);
+  /// Of a simulation that is there before the first row.
+  RowLoop(const Scene&, Outcome&, const Simulation&, const WatchedRows&);
 
   /// True if there are rows to step from.
   bool started() const { return started_; }
   std::int64_t newest() const { return newest_; }
   std::int64_t recorded() const { return recorded_; }
+  /// The iterations of the newest step; 0 if it is one solve.
+  int last_iterations() const { return last_iterations_; }
 
  private:
   void start();
   /// Saves or restores all that the rest of the run depends on; what is restored needs no start.
   void visit(SavedState&);
   virtual void make_first_rows() = 0;
-  /// The newest row that solves its equations.
-  virtual std::int64_t newest_row() const = 0;
-  /// The time of the newest rows, and that to which a further step leads.
-  virtual double time(std::int64_t row) const = 0;
-  /// The length of the newest step, where steps have lengths of their own.
-  virtual std::optional<double> own_length() const = 0;
   /// A row that is not checked is neither recorded nor the last.
   virtual void step(bool looked_at) = 0;
   virtual bool looks_at_all() const { return false; }
-  /// The iterations of the newest step; 0 if it is one solve.
-  virtual int iterations() const = 0;
   /// A row that was made is recorded; or throws NumericalFailure, if it is no result.
   virtual void record(std::int64_t row) = 0;
   /// The newest row is measured as if it were recorded; or throws NumericalFailure, if it is no result.
@@ -66,6 +62,7 @@ class RowLoop {
   void record_and_step();
   void step_until(std::int64_t row, Progress&);
   void note_length();
+  double time(std::int64_t row) const;
   void save();
   void put(std::int64_t row);
   void fail(const NumericalFailure&);
@@ -78,6 +75,7 @@ class RowLoop {
 
   const Scene& scene_;
   Outcome& outcome_;
+  const Simulation& simulation_;
   const WatchedRows watched_;
   RunFiles* files_ = nullptr;
   Checkpoints* checkpoints_ = nullptr;
@@ -86,7 +84,8 @@ class RowLoop {
   std::int64_t next_watched_ = 0;
   bool started_ = false;
   std::int64_t newest_ = 0, recorded_ = -1;
-  double iterations_ = 0;
+  double iterations_ = 0;  ///< of all steps
+  int last_iterations_ = 0;
 };
 
 }  // namespace delf

@@ -110,7 +110,7 @@ std::string threads_in_words(const Simulation& simulation, int asked) {
 
 Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
                    const std::optional<OwnEnergy>& own, Outcome& outcome)
-    : RowLoop(scene, outcome, watched_rows(scene, simulation)),
+    : RowLoop(scene, outcome, simulation, watched_rows(scene, simulation)),
       scene_(scene),
       initial_(initial),
       simulation_(simulation),
@@ -165,7 +165,7 @@ void Stepping::make_first_rows() {
     outcome_.conserved[j] = {outcome_.conserved[j].name, initial, initial, 0, at_walls};
   }
   if (!names_.of[Role::multiplier].empty()) outcome_.constraint_max = 0;
-  for (int back = static_cast<int>(newest_row()); back >= 0; --back) {
+  for (int back = static_cast<int>(simulation_.newest()); back >= 0; --back) {
     if (section_) section_->see(phase_point(back));
     see_step(back);
   }
@@ -184,7 +184,6 @@ std::vector<double> Stepping::phase_point(int back) const {
 }
 
 void Stepping::visit_rows(SavedState& state) {
-  state("iterations of the last step", last_iterations_);
   simulation_.visit(state);
   warnings_.visit(state);
   if (work_) work_->visit(state), density_work_->visit(state);
@@ -197,16 +196,10 @@ void Stepping::run(Recorder& recorder, Checkpoints& checkpoints) {
   RowLoop::run(recorder, checkpoints);
 }
 
-std::optional<double> Stepping::own_length() const {
-  const RowTimes& times = *simulation_.evolution().system().times();
-  return times.uniform() ? std::nullopt : std::optional(times.step(newest() - 1));
-}
-
 void Stepping::step(bool looked_at) {
   if (outcome_.steps_taken > 0) simulation_.step(looked_at);
   else first_step(simulation_, initial_, [&] { simulation_.step(looked_at); });
   add_work();
-  last_iterations_ = simulation_.iterations();
   if (const Continued why = simulation_.evolution().stepper().continued(); why != Continued::no)
     ++outcome_.continued[why];
   if (section_) section_->see(phase_point(0));
@@ -292,7 +285,7 @@ void Stepping::record(std::int64_t row) {
     record.charge = monitors.charge;
     put(monitors, record);
     of_method = monitors.of_method;
-    record.iterations = last_iterations_;
+    record.iterations = last_iterations();
   }
   if (has_monitors) {
     warnings_.see(record.time, row_[Role::field], of_method);

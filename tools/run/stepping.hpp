@@ -33,12 +33,8 @@ class Stepping final : public RowLoop {
 
  private:
   void make_first_rows() override;
-  std::int64_t newest_row() const override { return simulation_.newest(); }
-  double time(std::int64_t row) const override { return simulation_.time(row); }
-  std::optional<double> own_length() const override;
   void step(bool looked_at) override;
   bool looks_at_all() const override { return section_ || (measures_.sees_steps() && simulation_.is_processed()); }
-  int iterations() const override { return last_iterations_; }
   void record(std::int64_t row) override;
   void watch() override;
   bool record_start() override;
@@ -75,9 +71,8 @@ class Stepping final : public RowLoop {
   std::optional<Section> section_;
   std::optional<EndWork> work_;             ///< where an end is driven
   std::optional<WorkInTime> density_work_;  ///< there too, of all rows
-  std::vector<double> seen_;     ///< a row that is not recorded
-  int last_iterations_ = 0;
-  bool starts_again_ = false;  ///< the data of row 0 are recorded after steps
+  std::vector<double> seen_;                ///< a row that is not recorded
+  bool starts_again_ = false;               ///< the data of row 0 are recorded after steps
 };
 
 }  // namespace delf

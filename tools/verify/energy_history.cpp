@@ -32,4 +32,14 @@ Measured measured_energy(const std::string& name, const std::vector<double>& E, 
           .remark = remark};
 }
 
+EnergyChange::EnergyChange(double first, std::int64_t first_row) : first_(first), first_row_(first_row) {
+  measured_.name = "change of the energy", measured_.normaliser = std::abs(first);
+}
+
+void EnergyChange::add(double energy, std::int64_t row) {
+  const double change = first_ == 0 ? 0 : std::abs(energy - first_) / std::abs(first_);
+  if (++measured_.count > 1 && !worse(change, measured_.value)) return;
+  measured_.value = change, measured_.region = fmt::format("row {}, relative to row {}", row, first_row_);
+}
+
 }  // namespace delf

@@ -13,7 +13,6 @@
 #include "schemes/monodromy.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/mirrored_in_time.hpp"
-#include "schemes/verify/reversal/time_reversal.hpp"
 #include "schemes/verify/stress_balance.hpp"
 #include "tools/compare/refined_scene.hpp"
 #include "tools/report/interrupt.hpp"
@@ -55,6 +54,11 @@ void reverse_time(const Scene& scene, int winding, const std::vector<std::vector
     if (T) seen.problem = mirrored_in_time(seen.problem, *T);
     return std::make_unique<Simulation>(build(seen, winding));
   };
+  reverse_time(scene, fresh, first_rows, tolerance, verdict);
+}
+
+void reverse_time(const Scene& scene, const MakeSimulation& fresh, const std::vector<std::vector<double>>& first_rows,
+                  double tolerance, Verdict& verdict) {
   const bool by_rows = fresh(std::nullopt)->evolution().stepper().layout() != nullptr;
   const std::int64_t most = most_updates / (by_rows ? 1 : 40) / scene.problem.lattice.sites();
   const std::int64_t steps = std::clamp<std::int64_t>(scene.steps, 8, std::max<std::int64_t>(8, most));
@@ -74,6 +78,16 @@ void reverse_time(const Scene& scene, int winding, const std::vector<std::vector
                               .region = fmt::format("{} steps forward and back", reversal->steps.back()),
                               .value = reversal->distance.back(),
                               .remark = remark});
+}
+
+std::int64_t steps_of_run(const Scene& scene, Simulation& simulation) {
+  try {
+    while (!scene.is_over(simulation.newest(), simulation.time(simulation.newest())) && !Interrupt::asked())
+      simulation.step();
+  } catch (const NumericalFailure&) {  // which the rows that are checked will meet again
+    return simulation.newest() + 1;
+  }
+  return simulation.newest();
 }
 
 }  // namespace delf

@@ -29,7 +29,6 @@
 #include "tools/report/seconds_since.hpp"
 #include "tools/rows/engine.hpp"
 #include "tools/scene/recorded_scene.hpp"
-#include "tools/verify/energy_history.hpp"
 #include "tools/verify/further_runs.hpp"
 
 namespace delf {
@@ -80,9 +79,7 @@ Verification::Verification(const Scene& scene, const VerifyRequest& request, con
       throw scene.settings.error("lattice.time_steps",
                                  "solutions that chose other steps are none of the same equations; leave --nearby out");
     system_.times()->keep_all();
-    leave_out(
-        "symplecticity: the forms here are of steps as given; with steps chosen by the field the map of rows is "
-        "reversible, not symplectic, and its energy is what is measured");
+    leave_out(not_symplectic);
   }
   if (fields) open_files(*fields, nearby);
 
@@ -178,12 +175,10 @@ std::int64_t Verification::steps_of_run() const {
   Simulation simulation = build(scene_, winding_);
   try {
     initial_->start(simulation);
-    while (!scene_.is_over(simulation.newest(), simulation.time(simulation.newest())) && !Interrupt::asked())
-      simulation.step();
-  } catch (const NumericalFailure&) {  // which the rows that are checked will meet again
-    return simulation.newest() + 1;
+  } catch (const NumericalFailure&) {
+    return 1;
   }
-  return simulation.newest();
+  return delf::steps_of_run(scene_, simulation);
 }
 
 void Verification::choose_moments() {
@@ -369,13 +364,8 @@ void Verification::measure_energy(std::int64_t j) {
   const LatticeSystem& right = simulation_.evolution().system();  // a planted fault hides what its families are
   const EnergyOfRows energy = entry->make(simulation_.theory(), right, scene_.problem);
   const EnergyMomentum now = energy({simulation_.theory(), right, window(j - 1, j), j, right.times()->step(j - 1)});
-  if (j == 1) first_energy_ = now.energy;
-  if (!energy_change_)
-    energy_change_ = {.name = "change of the energy", .region = "row 1", .normaliser = std::abs(first_energy_)};
-  ++energy_change_->count;
-  const double change = std::abs(now.energy - first_energy_) / std::abs(first_energy_);
-  if (!(change <= energy_change_->value))
-    energy_change_->value = change, energy_change_->region = fmt::format("row {}, relative to row 1", j);
+  if (!energy_change_) energy_change_.emplace(now.energy, j);
+  energy_change_->add(now.energy, j);
 }
 
 // The first two rows are data, and the wall keeps what the second has.
@@ -548,7 +538,7 @@ void Verification::collect() {
     verdict_.measured.push_back(measured_energy("energy of the rows' own: " + energy.name, energy.value,
                                                 scene_.problem.time_step,
                                                 "largest |E - E first| beside that; " + energy.meaning));
-  if (energy_change_) verdict_.measured.push_back(*energy_change_);
+  if (energy_change_) verdict_.measured.push_back(energy_change_->measured());
   if (balance_) {  // without an order
     for (Measured& m : balance_->results()) verdict_.measured.push_back(std::move(m));
   }

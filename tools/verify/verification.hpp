@@ -22,6 +22,7 @@
 #include "tools/rows/nearby_rows.hpp"
 #include "tools/rows/recorded_section.hpp"
 #include "tools/rows/section_source.hpp"
+#include "tools/verify/energy_history.hpp"
 #include "tools/verify/residual_bins.hpp"
 #include "tools/verify/verdict.hpp"
 #include "tools/verify/verify_request.hpp"
@@ -89,12 +90,11 @@ class Verification {
   std::optional<StressBalance> balance_;
   std::optional<ResidualBins> bins_, severity_;
   std::optional<OwnEnergy> energy_;
-  std::optional<Measured> energy_change_;  ///< where rows choose the steps
-  double first_energy_ = 0;
-  FailedEquations failed_, hidden_;       ///< of `equations_`; and beyond the errors of the values
-  std::optional<RoundedValues> rounded_;  ///< of rows of a file
-  std::optional<ForceShare> share_;       ///< of rows of a file
-  std::optional<Check> walls_;            ///< of rows of a file: fixed walls keep their values
+  std::optional<EnergyChange> energy_change_;  ///< where rows choose the steps
+  FailedEquations failed_, hidden_;            ///< of `equations_`; and beyond the errors of the values
+  std::optional<RoundedValues> rounded_;       ///< of rows of a file
+  std::optional<ForceShare> share_;            ///< of rows of a file
+  std::optional<Check> walls_;                 ///< of rows of a file: fixed walls keep their values
 
   std::int64_t rows_ = 0;  ///< of the section
   std::int64_t balance_rows_ = 0;

@@ -68,19 +68,10 @@ ExitCode verify_in(const fs::path& folder, const Scene& scene, const std::option
   const Interrupt interrupt;
   // earlier results stay until there are new ones
   const auto [verdict, failure] = verified(scene, fields, nearby, [&] { make_results_folder(folder); });
-  const Subject subject = subject_of(scene.problem);
-  write_text_file(folder / "verify.json", verdict_json(subject, scene, verdict));
-  write_tables(folder, verdict);
-  remove_figures(verdict_figure_names(), folder);
-  const std::string missing =
-      scene.figures ? draw_verdict(verdict, scene.name, scheme_in_words(scene.problem), scene.figure_form, folder)
-                    : std::string();
-  fmt::print("{}", verdict_report(subject, scene, verdict));
-  fmt::print("{}: verify.json{}\n", folder.string(), scene.figures && missing.empty() ? " figures" : "");
-  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
+  const ExitCode code =
+      write_verdict(verdict, subject_of(scene.problem), scene, folder, scheme_in_words(scene.problem));
   if (failure) std::rethrow_exception(failure);
-  if (verdict.status == "interrupted") return ExitCode::interrupted;
-  return verdict.passed() ? ExitCode::done : ExitCode::check_failed;
+  return code;
 }
 
 Scene with_first_row_of(Scene scene, const std::optional<std::string>& fields) {
@@ -89,6 +80,22 @@ Scene with_first_row_of(Scene scene, const std::optional<std::string>& fields) {
 }
 
 }  // namespace
+
+ExitCode write_verdict(const Verdict& verdict, const Subject& subject, const Scene& scene, const fs::path& folder,
+                       const std::string& title) {
+  make_results_folder(folder);
+  write_text_file(folder / "verify.json", verdict_json(subject, scene, verdict));
+  write_tables(folder, verdict);
+  remove_figures(verdict_figure_names(), folder);
+  const bool draws = scene.figures && !title.empty();
+  const std::string missing =
+      draws ? draw_verdict(verdict, scene.name, title, scene.figure_form, folder) : std::string();
+  fmt::print("{}", verdict_report(subject, scene, verdict));
+  fmt::print("{}: verify.json{}\n", folder.string(), draws && missing.empty() ? " figures" : "");
+  if (!missing.empty()) fmt::print(stderr, "delf: no figures: {}\n", missing);
+  if (verdict.status == "interrupted") return ExitCode::interrupted;
+  return verdict.passed() ? ExitCode::done : ExitCode::check_failed;
+}
 
 void imply_rows(Settings& settings, const std::string& fields) {
   if (!settings.find("initial.state")) {

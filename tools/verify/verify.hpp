@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "tools/outcome/outcome.hpp"
 #include "tools/report/failure.hpp"
 #include "tools/scene/scene.hpp"
+#include "tools/verify/verdict.hpp"
 
 namespace delf {
 
@@ -17,5 +19,10 @@ void imply_rows(Settings&, const std::string& fields);
 /// `folder`. The exit code reports a failed check.
 ExitCode verify(const Scene&, const std::filesystem::path& folder, const std::optional<std::string>& fields,
                 const std::vector<std::string>& nearby);
+
+/// Writes the results of a verification in place of earlier ones, and reports them. Figures have a `title`; without it there
+/// are none.
+ExitCode write_verdict(const Verdict&, const Subject&, const Scene&, const std::filesystem::path& folder,
+                       const std::string& title = {});
 
 }  // namespace delf

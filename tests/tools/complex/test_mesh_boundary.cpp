@@ -136,6 +136,7 @@ TEST_CASE("a driven run goes on from its middle to the bit, is verified, and pla
     const Ran verified = delf_program(folder, "verify s.ini --out v --run.until=2" + keys + method);
     CAPTURE(verified.out, verified.err);
     CHECK(verified.code == 0);
+    CHECK(contains(verified.out, "time reversal, distance"));
     CHECK(delf_program(folder, "verify s.ini --out v --run.until=2 --verify.fault=field" + keys + method).code == 1);
   }
   const std::string plan = delf_program(folder, "plan s.ini" + keys).out;

@@ -109,6 +109,7 @@ TEST_CASE("methods on a mesh keep the form, and planted faults are found") {
     CAPTURE(ran.out, ran.err);
     CHECK(ran.code == 0);
     CHECK(contains(ran.out, "constraint") == run.starts_with("turning"));
+    CHECK(contains(ran.out, "time reversal, distance"));
     for (const std::string fault : {"sign", "field", "variation"})
       CHECK(delf_program(folder, scene + " --verify.fault=" + fault).code == 1);
   }
