@@ -12,6 +12,7 @@
 
 #include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "tools/command_line.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
@@ -21,6 +22,7 @@
 #include "tools/page/page.hpp"
 #include "tools/page/result_folder.hpp"
 #include "tools/plan.hpp"
+#include "tools/reproduce/reproduce.hpp"
 #include "tools/resume.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/run/kept_results.hpp"
@@ -236,6 +238,10 @@ ExitCode carry_out_stability(const Arguments& arguments) {
                       [](const auto& scene, const std::string& folder) { return stability(scene, folder); });
 }
 
+ExitCode carry_out_reproduce(const Arguments& arguments) {
+  return reproduce({arguments.words.begin() + 1, arguments.words.end()}, arguments.keys, arguments.out, run_program);
+}
+
 ExitCode carry_out_list(const Arguments& arguments) {
   refuse(arguments, true);
   return list(only_word(arguments, ""));
@@ -409,7 +415,16 @@ const std::vector<Command>& table() {
        "has no script, loads nothing, and takes a million bytes at most. output.report = on makes it with the results of a\n"
        "command.",
        false, carry_out_report},
-      {"list", "delf list [theories|stencils|schemes|states|scenes]", "what there is",
+      {"reproduce", "delf reproduce [ID ...] [--out DIR] [--KEY=VALUE ...]", "published results, computed again",
+       "Computes numbers and equations that papers print, each by a command of its own, and says which come out: reproduced;\n"
+       "misprint, where the correction holds; differs, with the reason; or failed. ID is one of `delf list results`, or the\n"
+       "name of a paper there, for all of its results; without one all results that take little time are computed. Into DIR\n"
+       "(results/reproduce, if not given) go results.json, results.csv, report.html, and runs/ID, the results of each\n"
+       "command. Keys of a scene go to every command: `delf reproduce phi4-critical-speed --lattice.sites=3200`. Exit code 1\n"
+       "if one failed; Ctrl-C keeps those that have ended.\n\n"
+       "The keys of its own section:",
+       false, carry_out_reproduce, "reproduce"},
+      {"list", "delf list [theories|stencils|schemes|states|scenes|results]", "what there is",
        "Lists what a scene can name, with formulas; everything if no kind is given.", false, carry_out_list},
       {"help", "delf help [COMMAND]", "this, or the details of a command", "Explains a command.", false,
        carry_out_help}};

@@ -231,7 +231,7 @@ constexpr const char* measures_head =
 
 )page";
 constexpr const char* measures_foot = R"page(
-[level]: may be left out. All are of the first field. Extremes, crossings and frequencies see all steps, the others the
+[level]: may be left out. All are of the first field. Extremes, crossings, frequencies and lines see all steps, the others the
 recorded rows (output.every); without an answer there is null. Their numbers, and what is made of them, are sums,
 products, powers and functions as in `delf help lagrangians`, of theory.NAME as NAME, L, pi, and t, the time of the last row.
 )page";
@@ -302,7 +302,7 @@ ExitCode help(const std::string& name) {
   const Command& command = find_command(name);
   fmt::print("{}\n\n", command.usage);
   print_filled(command.details);
-  if (command.reads_scene) print_keys(command.section);
+  if (command.reads_scene || !command.section.empty()) print_keys(command.section);
   return ExitCode::done;
 }
 

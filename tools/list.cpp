@@ -10,6 +10,7 @@
 #include "schemes/simulation.hpp"
 #include "schemes/states/state_registry.hpp"
 #include "tools/report/text_columns.hpp"
+#include "tools/reproduce/reproduce.hpp"
 #include "tools/scene/shipped_scenes.hpp"
 #include "tools/scene/suggestion.hpp"
 
@@ -62,7 +63,8 @@ constexpr Kind kinds[] = {{"theories", print_theories},
                           {"stencils", print_stencils},
                           {"schemes", print_schemes},
                           {"states", print_states},
-                          {"scenes", print_scenes}};
+                          {"scenes", print_scenes},
+                          {"results", list_results}};
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 
 namespace delf {
 
-/// `delf list`: the names of one kind (theories, stencils, schemes, states, scenes), or of all.
+/// `delf list`: the names of one kind (theories, stencils, schemes, states, scenes, results), or of all.
 ExitCode list(const std::string& kind);
 
 }  // namespace delf

@@ -13,7 +13,7 @@ TEST_CASE("help, version and lists go to stdout and succeed") {
   const Folder folder;
   for (const char* arguments : {"help", "--help", "-h", "help run", "run --help", "help plan", "help verify",
                                 "help lagrangians", "verify --help", "list", "list theories", "list stencils",
-                                "list schemes", "list states", "list scenes", "--version"}) {
+                                "list schemes", "list states", "list scenes", "list results", "--version"}) {
     const Ran ran = delf_program(folder, arguments);
     INFO(arguments);
     CHECK(ran.code == 0);
@@ -28,7 +28,7 @@ TEST_CASE("help, version and lists go to stdout and succeed") {
 TEST_CASE("the helps of all commands list every key") {
   const Folder folder;
   std::string help;
-  for (const char* command : {"run", "verify", "sweep", "convergence", "stability", "workprecision"})
+  for (const char* command : {"run", "verify", "sweep", "convergence", "stability", "workprecision", "reproduce"})
     help += delf_program(folder, std::string("help ") + command).out;
   for (const auto& key : delf::keys()) CHECK(contains(help, key.key));
 }
@@ -150,6 +150,8 @@ TEST_CASE("bash completes commands, scenes, keys, their values and files of rows
         "--lattice.space=interval\n");
   CHECK(complete("delf compare kink --lattice.stencil=triangle,hex", "delf compare kink --lattice.stencil=triangle,hex",
                  false) == "--lattice.stencil=triangle,hexagon\n");
+  CHECK(complete("delf reproduce mps-sym", "delf reproduce mps-sym", true) ==
+        "mps-symmetric\nmps-symmetric-differences\nmps-symmetric-order\n");
   CHECK(complete("delf verify kink --fields ro", "delf verify kink --fields ro", true) == "rows.csv\n");
   CHECK(complete("delf verify kink --fi", "delf verify kink --fi", true) == "--fields\n");
 }

@@ -40,7 +40,7 @@ _delf() {
   esac
   case $command in
     help) mapfile -t COMPREPLY < <(compgen -W "$("$program" help 2>/dev/null | sed -n 's/^  delf \([a-z]*\) .*/\1/p') lagrangians measures" -- "$word") ;;
-    list) mapfile -t COMPREPLY < <(compgen -W "theories stencils schemes states scenes" -- "$word") ;;
+    list) mapfile -t COMPREPLY < <(compgen -W "theories stencils schemes states scenes results" -- "$word") ;;
     resume)
       if [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "--run.until= --run.steps= --run.threads= --output.checkpoint=" -- "$word")
@@ -57,6 +57,8 @@ _delf() {
         [[ $command == run ]] && options+=' --overwrite'
         mapfile -t COMPREPLY < <(compgen -W "$options $({ "$program" help run; "$program" help "$command"; } 2>/dev/null |
           sed -n 's/^  \([a-z]*\.[a-z_]*\) .*/--\1=/p' | sort -u)" -- "$word")
+      elif [[ $command == reproduce ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$("$program" list results 2>/dev/null | sed -n 's/^  \([^ ]*\) .*/\1/p')" -- "$word")
       else
         mapfile -t COMPREPLY < <(compgen -W "$("$program" list scenes 2>/dev/null | sed -n 's/^  \([a-z0-9-]*\) .*/\1/p')" -- "$word"
           compgen -f -- "$word")

@@ -45,11 +45,33 @@ double MeasuredField::place(double x) const {
 }
 
 std::span<const MeasurementEntry> measurements() {
-  static const MeasurementEntry all[] = {
-      value_measurement,        minimum_measurement,   maximum_measurement,   minimum_time_measurement,
-      maximum_time_measurement, crossings_measurement, frequency_measurement, kinks_measurement,
-      charge_measurement,       position_measurement,  speed_measurement,     energy_left_measurement,
-      wavenumber_measurement,   mode_measurement,      mode_rate_measurement, energy_error_time_measurement};
+  static const MeasurementEntry all[] = {value_measurement,
+                                         minimum_measurement,
+                                         maximum_measurement,
+                                         minimum_time_measurement,
+                                         maximum_time_measurement,
+                                         crossings_measurement,
+                                         frequency_measurement,
+                                         kinks_measurement,
+                                         charge_measurement,
+                                         position_measurement,
+                                         speed_measurement,
+                                         energy_left_measurement,
+                                         wavenumber_measurement,
+                                         mode_measurement,
+                                         mode_rate_measurement,
+                                         mode_return_measurement,
+                                         mode_return_time_measurement,
+                                         mean_measurement,
+                                         pulse_width_measurement,
+                                         peak_measurement,
+                                         peak_position_measurement,
+                                         crossing_time_measurement,
+                                         section_value_measurement,
+                                         line_measurement,
+                                         energy_minimum_measurement,
+                                         energy_maximum_measurement,
+                                         energy_error_time_measurement};
   return all;
 }
 

@@ -35,6 +35,7 @@ struct MeasuredRow {
   double time;
   std::span<const double> row, other;
   double energy_error = std::numeric_limits<double>::quiet_NaN();  ///< relative to row 0
+  double energy = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One number of a run. It sees the recorded rows, or the rows of all steps, in their order, and keeps no more of them

@@ -67,6 +67,23 @@ class ModeRate final : public Mode {
   double value() const override { return (now_ - before_) / field_.time_step; }
 };
 
+/// The largest |a_n| after a time, or when it is: how far, and when, a mode comes back.
+template <bool of_time>
+class ModeReturn final : public Mode {
+ public:
+  ModeReturn(const MeasuredField& field, const std::vector<double>& numbers)
+      : Mode(field, numbers), after_(numbers[1]) {}
+  void see(const MeasuredRow& row) override {
+    if (row.time < after_) return;
+    const double size = std::abs(amplitude(row.row));
+    if (std::isnan(now_) || size > now_) now_ = size, before_ = row.time;
+  }
+  double value() const override { return of_time ? before_ : now_; }
+
+ private:
+  double after_;
+};
+
 }  // namespace
 
 const MeasurementEntry mode_measurement{
@@ -78,5 +95,19 @@ const MeasurementEntry mode_measurement{
     make_measurement<ModeAmplitude>};
 const MeasurementEntry mode_rate_measurement{"mode_rate", "n", "how fast mode(n) changes, half a step before that",
                                              1,           1,   make_measurement<ModeRate>};
+
+const MeasurementEntry mode_return_measurement{
+    "mode_return",
+    "n, after",
+    "the largest |mode(n)| of the recorded rows after a time: how far it comes back",
+    2,
+    2,
+    make_measurement<ModeReturn<false>>};
+const MeasurementEntry mode_return_time_measurement{"mode_return_time",
+                                                    "n, after",
+                                                    "when |mode(n)| is largest after that time",
+                                                    2,
+                                                    2,
+                                                    make_measurement<ModeReturn<true>>};
 
 }  // namespace delf

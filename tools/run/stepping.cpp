@@ -364,7 +364,7 @@ void Stepping::measure(const Record& record, int back) {
     other.resize(row_[Role::field].size());
     simulation_.observe(neighbour, other);  // as the row itself
   }
-  measures_.see({record.time, row_[Role::field], other, record.energy_error});
+  measures_.see({record.time, row_[Role::field], other, record.energy_error, record.energy});
 }
 
 /// (φ − φ′)/h of the row and the one before it, or after row 0; none where that is not held.

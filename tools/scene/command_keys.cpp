@@ -169,6 +169,16 @@ std::vector<Parameter> command_keys() {
        .fallback = "on",
        .help = "other programs in the same run, where they have the scene's equation",
        .choices = on_or_off},
+
+      {.key = "reproduce.slow",
+       .fallback = "off",
+       .help = "results that take long too, or only those, where no id is given",
+       .choices = {"off", "on", "only"}},
+      {.key = "reproduce.jobs",
+       .fallback = 0,
+       .help = "commands side by side",
+       .range = {.low = 1, .high = 1024},
+       .otherwise = "one a core"},
   };
 }
 

@@ -11,7 +11,7 @@ namespace delf {
 
 /// [theory] [lattice] [scheme] [initial] [boundary] [run] [output]: the keys of a scene.
 std::vector<Parameter> scene_keys();
-/// [verify] [sweep] [convergence] [stability] [workprecision]: the keys of commands.
+/// [verify] [sweep] [convergence] [stability] [workprecision] [reproduce]: the keys of commands.
 std::vector<Parameter> command_keys();
 
 /// The name that stands among the choices of a key for any formula.

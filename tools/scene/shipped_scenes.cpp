@@ -46,6 +46,13 @@ std::vector<ShippedScene> shipped_scenes() {
   return scenes;
 }
 
+fs::path shipped_folder(const std::string& name) {
+  std::error_code none;
+  for (const std::string& folder : folders())
+    if (const fs::path path = fs::path(folder) / name; fs::is_directory(path, none)) return path;
+  return {};
+}
+
 fs::path find_scene(const std::string& scene) {
   std::error_code none;
   const fs::path path(scene);
