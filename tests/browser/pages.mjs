@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // node pages.mjs DELF FOLDER: makes the pages of six scenes in FOLDER, opens them in headless Chromium, dark and light,
 // wide and narrow, and has axe-core look for what keeps people from reading them. Screenshots are left in FOLDER.
+// node pages.mjs SITE FOLDER FILE …: the same of files of the folder SITE.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 
-const [program, folder] = process.argv.slice(2).map((path) => resolve(path));
+const [program, folder] = process.argv.slice(2, 4).map((path) => resolve(path));
+const named = process.argv.slice(4), from = named.length ? program : folder;
 const skip = (why) => { console.log(`skipped: ${why}; run tools/setup --browser`); process.exit(0); };
 
 const browser = ["chromium", "chromium-browser", "google-chrome"].find((name) => spawnSync(name, ["--version"]).status === 0);
@@ -26,15 +28,15 @@ const pages = {
 };
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
-for (const [name, [words, code = 0]] of Object.entries(pages)) {
+for (const [name, [words, code = 0]] of named.length ? [] : Object.entries(pages)) {
   const ran = spawnSync(program, [...words.split(" "), "--output.report=on", "--out", name], { cwd: folder, encoding: "utf8" });
   if (ran.status !== code) throw new Error(`delf ${words}: exit code ${ran.status}: ${ran.stderr}`);
 }
-execFileSync(program, ["report", "collision", "sphere", "--out", "beside.html"], { cwd: folder });
-const files = [...Object.keys(pages).map((name) => join(name, "report.html")), "beside.html"];
+if (!named.length) execFileSync(program, ["report", "collision", "sphere", "--out", "beside.html"], { cwd: folder });
+const files = named.length ? named : [...Object.keys(pages).map((name) => join(name, "report.html")), "beside.html"];
 
 // The check can fail: an image without words, text that is hard to read, a list that is none.
-writeFileSync(join(folder, "broken.html"), '<html><body><img src="data:,"><p style="color:#aaa;background:#fff">faint</p></body></html>');
+writeFileSync(join(from, "broken.html"), '<html><body><img src="data:,"><p style="color:#aaa;background:#fff">faint</p></body></html>');
 
 // Chromium's own protocol, by a pipe: messages of JSON that end in a zero byte.
 const chromium = spawn(browser, ["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
@@ -77,7 +79,7 @@ async function violations(file, width, colours) {
   await tell("Log.enable");
   await tell("Emulation.setDeviceMetricsOverride", { width, height: 900, deviceScaleFactor: 1, mobile: width < 600 });
   await tell("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: colours }] });
-  await tell("Page.navigate", { url: `file://${join(folder, file)}` });
+  await tell("Page.navigate", { url: `file://${join(from, file)}` });
   await event("Page.loadEventFired", sessionId);
   const evaluate = async (expression) => {
     const { result, exceptionDetails } = await tell("Runtime.evaluate", { expression, awaitPromise: true, returnByValue: true });
@@ -90,7 +92,7 @@ async function violations(file, width, colours) {
     ...(document.documentElement.scrollWidth > innerWidth + 1 ? ["it is wider than the screen: " + document.documentElement.scrollWidth] : [])]`));
   await evaluate(axe + ";0");  // by the protocol: the page itself has no script, and its policy allows none
   found.push(...await evaluate(`axe.run(document).then((r) => r.violations.map((v) => v.id + ": " + v.help + ": " + v.nodes[0].html.slice(0, 120)))`));
-  const name = `${file.replace("/report.html", "").replace(".html", "")}-${width}-${colours}`;
+  const name = `${file.replace("/report.html", "").replace(".html", "").replaceAll("/", "-")}-${width}-${colours}`;
   const { cssContentSize } = await tell("Page.getLayoutMetrics");
   const { data } = await tell("Page.captureScreenshot", { captureBeyondViewport: true,
     clip: { x: 0, y: 0, width, height: Math.min(cssContentSize.height, 12000), scale: 1 } });
@@ -104,7 +106,7 @@ for (const file of files)
   for (const [width, colours] of [[1280, "light"], [400, "light"], [1280, "dark"]]) {
     const found = await violations(file, width, colours);
     wrong += found.length;
-    console.log(`${file}, ${statSync(join(folder, file)).size} bytes, ${width} ${colours}: ${found.length || "no"} violation${found.length === 1 ? "" : "s"}`);
+    console.log(`${file}, ${statSync(join(from, file)).size} bytes, ${width} ${colours}: ${found.length || "no"} violation${found.length === 1 ? "" : "s"}`);
     for (const one of found) console.log(`  ${one}`);
   }
 if ((await violations("broken.html", 1280, "light")).length < 3) { console.error("the check finds nothing in a broken page"); ++wrong; }
