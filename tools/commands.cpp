@@ -13,7 +13,7 @@
 #include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
 #include "tools/command_line.hpp"
-#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_run.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
 #include "tools/files/text_file.hpp"

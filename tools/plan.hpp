@@ -5,8 +5,12 @@
 
 namespace delf {
 
+struct ComplexScene;
+
 /// `delf plan`: the equations that a run of the scene would solve, how, its files, what it leaves out, and its cost by
 /// trial steps. `latex`: the equations alone, for a paper.
 ExitCode plan(const Scene&, bool latex);
+/// The plan of a scene on a mesh, which has no equations for a paper.
+ExitCode plan(const ComplexScene&, bool latex);
 
 }  // namespace delf

@@ -9,7 +9,7 @@
 #include <string>
 #include <variant>
 
-#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_run.hpp"
 #include "tools/files/checkpoint_file.hpp"
 #include "tools/run/checkpoints.hpp"
 #include "tools/run/run.hpp"

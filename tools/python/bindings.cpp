@@ -23,7 +23,7 @@
 #include "schemes/simulation.hpp"
 #include "schemes/start_values.hpp"
 #include "tools/commands.hpp"
-#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_run.hpp"
 #include "tools/report/failure.hpp"
 #include "tools/report/interrupt.hpp"
 #include "tools/report/progress.hpp"

@@ -19,7 +19,7 @@
 #include <fstream>
 #include <map>
 
-#include "tools/complex/complex_commands.hpp"
+#include "tools/complex/mesh_run.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/report/failure.hpp"
 #include "tools/report/interrupt.hpp"

@@ -7,9 +7,9 @@
 #include "schemes/simulation.hpp"
 #include "schemes/stability/mesh_frequency.hpp"
 #include "schemes/stepping/evolution.hpp"
-#include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
+#include "tools/plan.hpp"
 
 namespace delf {
 namespace {

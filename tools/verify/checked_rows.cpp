@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/complex/checked_rows.hpp"
+#include "tools/verify/checked_rows.hpp"
 
 #include <fmt/format.h>
 

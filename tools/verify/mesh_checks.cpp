@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/complex/mesh_checks.hpp"
+#include "tools/verify/mesh_checks.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/complex/mesh_convergence.hpp"
+#include "tools/convergence/mesh_convergence.hpp"
 
 #include <algorithm>
 #include <chrono>

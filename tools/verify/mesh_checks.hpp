@@ -9,9 +9,9 @@
 
 #include "jets/symmetry.hpp"
 #include "schemes/verify/noether_check.hpp"
-#include "tools/complex/checked_rows.hpp"
 #include "tools/complex/complex_scene.hpp"
 #include "tools/scene/values.hpp"
+#include "tools/verify/checked_rows.hpp"
 #include "tools/verify/verdict.hpp"
 
 namespace delf {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "tools/complex/mesh_run.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include <cmath>
 #include <exception>
 
-#include "tools/complex/complex_commands.hpp"
 #include "tools/complex/mesh_stepping.hpp"
 #include "tools/complex/mesh_summary.hpp"
 #include "tools/complex/static_field.hpp"
