@@ -97,6 +97,7 @@ async function violations(file, width, colours) {
   const { data } = await tell("Page.captureScreenshot", { captureBeyondViewport: true,
     clip: { x: 0, y: 0, width, height: Math.min(cssContentSize.height, 12000), scale: 1 } });
   writeFileSync(join(folder, `${name}.png`), Buffer.from(data, "base64"));
+  await evaluate("localStorage.clear()");  // colours that a page remembers are those of the next one
   await ask("Target.closeTarget", { targetId });
   return found;
 }

@@ -11,12 +11,12 @@ title is a file there. A comment after a block says what of its output is shown:
     <!-- output -->                all
     <!-- output: PATTERN -->       lines in which the regular expression PATTERN is found
     <!-- insert -->                all, as Markdown: a table, or mathematics
-    <!-- keys: SECTION … -->       needs no block: what `delf help SECTION` says, as a table
+    <!-- keys -->                  needs no block: all keys of all commands, as tables
     <!-- film: DIR -->             needs no block: the film of the run in DIR, where the program makes one; the first one
                                    only, without --films
 
-A figure must be made by a command of its chapter, and a decimal number in its prose be printed by one. The commands of the
-READMEs run too, those that take minutes at a smaller size.
+A figure must be made by a command of its chapter, and a decimal number in its prose stand in a block or be printed. The
+commands of the READMEs run too, those that take minutes at a smaller size.
 """
 
 import argparse
@@ -61,10 +61,16 @@ class Program:
         self.commands += len(re.findall(r"^[a-z]", script.replace("\\\n", " "), re.MULTILINE))
         return ran.stdout
 
+    def help(self, *words):
+        return subprocess.run(["delf", "help", *words], env=self.environment, capture_output=True, text=True, check=True).stdout
+
+    def knows(self):
+        """The commands of the program, in its own order."""
+        return list(dict.fromkeys(re.findall(r"^  delf ([a-z]+)", self.help(), re.MULTILINE)))
+
     def film(self, run, folder, place):
-        """A film of a run, where the program knows how, and one that nobody asks for all films is made."""
-        helped = subprocess.run(["delf", "help"], env=self.environment, capture_output=True, text=True).stdout
-        if not self.films or not re.search(r"^  delf film\b", helped, re.MULTILINE):
+        """The film of a run, if the program makes films: the first one only, unless all are asked for."""
+        if not self.films or "film" not in self.knows():
             return []
         self.films -= 1
         self.run(f"delf film {run}", folder, place)
@@ -75,20 +81,17 @@ class Program:
         return ["", f'<video controls muted loop preload="none" poster="run/{folder.name}/{run}/figures/film.png" src="{source}">'
                     "</video>"]
 
-    def keys(self, section, place):
-        """What `delf help SECTION` says, as rows of a table."""
-        rows = []
-        for line in self.run(f"delf help {section}", self.work, place).splitlines():
-            if key := re.match(r"  ([a-z]+\.\S+) +(\S.*)", line):
-                rows.append([key[1], key[2]])
-            elif condition := re.match(r"  (with \S.*):$", line):
-                rows.append(["", condition[1]])
-            elif rows and line.startswith("      "):
-                rows[-1][1] += " " + line.strip()
-        if not rows:
-            raise Wrong(f"{place}: `delf help {section}` lists no keys")
-        cell = lambda key, text: f"| `{key}` | {plain(text)} |" if key else f"| | *{plain(text)}* |"
-        return "\n".join([f"| [{section}] | meaning, and what holds otherwise |", "|---|---|", *(cell(*row) for row in rows)])
+    def keys(self):
+        """Tables of all keys by section, as `delf help COMMAND` has them."""
+        sections = {}
+        for command in self.knows():
+            for name, purpose, text in re.findall(r"^\[(\w+)\] *(.*)\n((?:  .*\n|\n)*)", self.help(command), re.MULTILINE):
+                text = re.sub(r"\n {6,}", " ", text)
+                keys = re.findall(r"^  (?:([a-z]+\.\S+) +)?(.*)", text, re.MULTILINE)
+                sections.setdefault(name, [
+                    "", f"### [{name}]", "", purpose or f"Of `delf {command}`.", "", "| key | meaning |", "|---|---|",
+                    *(f"| `{key}` | {plain(words)} |" if key else f"| | *{plain(words.rstrip(':'))}* |" for key, words in keys)])
+        return [line for section in sections.values() for line in section] + [""]
 
 
 def plain(text):
@@ -126,7 +129,7 @@ def chapter(source, program):
         elif directive := re.match(r"<!-- (output|insert|keys|film)(?:: (.*))? -->$", line):
             what, argument = directive.groups()
             if what == "keys":
-                page += [text for section in argument.split() for text in (program.keys(section, place), "")]
+                page += program.keys()
             elif what == "film":
                 page += program.film(argument, folder, place)
             else:

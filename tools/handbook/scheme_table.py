@@ -28,7 +28,7 @@ def limit(name):
     return "none" if found["courant_theory"] is None else f"{found['courant_theory']:.3f}"
 
 
-print("| scheme | order | forces | µs | error | h/k | form formula | an energy of its rows | source |")
+print("| scheme | order | forces | µs | error | h/k | form formula | energy | source |")
 print("|---|--:|--:|--:|--:|--:|---|---|---|")
 for line in pathlib.Path(sys.argv[1]).read_text().splitlines():
     name, _, source = line.split("|")
