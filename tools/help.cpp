@@ -76,6 +76,7 @@ constexpr std::pair<std::string_view, const char*> purposes[] = {
     {"boundary", "the ends of an interval, the boundary of a mesh, the gain around a circle"},
     {"run", "how far, with which random numbers, on how many threads"},
     {"output", "what is recorded, drawn and written"},
+    {"figures", "which figures are drawn beside the usual ones"},
     {"stencil", "a stencil of your own"},
     {"mesh", "sites that move with the field"}};
 
@@ -302,7 +303,7 @@ ExitCode help(const std::string& name) {
   const Command& command = find_command(name);
   fmt::print("{}\n\n", command.usage);
   print_filled(command.details);
-  if (command.reads_scene) print_keys(command.section);
+  if (command.reads_scene || !command.section.empty()) print_keys(command.section);
   return ExitCode::done;
 }
 

@@ -58,6 +58,7 @@ class Stepping final : public RowLoop {
   std::vector<double> rates(int back) const;
   void warn_of_alias();
   std::vector<double> phase_point(int back) const;
+  std::vector<double> drawn_momenta(int back) const;
   void put(const Simulation::Monitors&, Record&) const;
   Simulation::Monitors monitors() const;
 
@@ -75,7 +76,7 @@ class Stepping final : public RowLoop {
   std::optional<Section> section_;
   std::optional<EndWork> work_;             ///< where an end is driven
   std::optional<WorkInTime> density_work_;  ///< there too, of all rows
-  std::vector<double> seen_;     ///< a row that is not recorded
+  std::vector<double> seen_;                ///< a row that is not recorded
   int last_iterations_ = 0;
   bool starts_again_ = false;  ///< the data of row 0 are recorded after steps
 };

@@ -29,6 +29,7 @@ const std::vector<KeysOfSpaces>& keys_of_spaces() {
       {{circle, interval}, {"lattice.sites", "lattice.length"}, "{} has neither length nor sites"},
       {{circle}, {"boundary.winding"}, "{} has no winding"},
       {{circle}, {gain_key}, "only a circle is gone around"},
+      {{circle}, {"figures.spectrum"}, "only a circle has waves of all its wave numbers"},
       {{interval}, {"boundary.left", "boundary.right", "boundary.left.flux", "boundary.right.flux"}, "{} has no walls"},
       {{circle, interval, mesh, still, spacetime}, {"output.xdmf"}, "{} has no space to show"},
       {{point}, {"output.section"}, "sections are of mechanics, lattice.space = point"},

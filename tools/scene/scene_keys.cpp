@@ -259,6 +259,11 @@ std::vector<Parameter> scene_keys() {
        .help = "a Poincare section: q1 = 0, p1 > 0; its points are in "
                "section.csv. Angles of the theory count modulo 2 pi",
        .otherwise = "none"},
+      {.key = "figures.spectrum",
+       .fallback = "off",
+       .help = "draw |phi_k| over the wave number k, in the beginning and in the end, and the frequencies of the "
+               "lattice's waves",
+       .choices = on_or_off},
   };
 }
 
