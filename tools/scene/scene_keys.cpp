@@ -238,6 +238,11 @@ std::vector<Parameter> scene_keys() {
        .fallback = "off",
        .help = "make a page of the results, report.html, as `delf report` does",
        .choices = on_or_off},
+      {.key = "output.film",
+       .fallback = "off",
+       .help = "make a film of the recorded rows, film.mp4 or film.gif, as `delf film` does; a run that is not over is "
+               "not filmed",
+       .choices = on_or_off},
       {.key = "output.estimate",
        .fallback = "off",
        .help = "estimate the errors of the last row and of the measures by two more runs, "
