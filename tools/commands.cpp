@@ -17,6 +17,7 @@
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
 #include "tools/files/text_file.hpp"
+#include "tools/film/make_film.hpp"
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/page/page.hpp"
@@ -36,6 +37,7 @@
 #include "tools/sweep/sweep.hpp"
 #include "tools/verify/verify.hpp"
 #include "tools/workprecision/workprecision.hpp"
+#include "tools/xdmf.hpp"
 
 namespace delf {
 
@@ -167,9 +169,34 @@ ExitCode run_keeping(const Arguments& arguments, const SomeScene& scene, const s
   return run(scene, folder);
 }
 
+/// Makes the film of a run that is over, where its scene asks for one. A film that fails does not fail the run.
+ExitCode with_film(const Settings& settings, const std::filesystem::path& folder, const std::vector<Setting>& keys,
+                   ExitCode of_run) {
+  const Values values(settings);
+  if (!values.toggle("output.film") || !values.toggle("output.fields")) return of_run;
+  if (of_run != ExitCode::done) {
+    std::fputs(fmt::format("delf: no film: the run is not over; `delf film {}` makes it\n", folder.string()).c_str(),
+               stderr);
+    return of_run;
+  }
+  try {
+    return make_film(folder, keys);
+  } catch (const std::exception& error) {
+    std::fputs((error_line(error) + "\n").c_str(), stderr);
+  }
+  return of_run;
+}
+
+/// The keys of films among those of a command line.
+std::vector<Setting> keys_of_film(std::vector<Setting> keys) {
+  std::erase_if(keys, [](const Setting& s) { return section_of(s.key) != find_command("film").section; });
+  return keys;
+}
+
 ExitCode carry_out_run(const Arguments& arguments) {
   return with_results(settings_of(arguments), arguments, [&](const auto& scene, const std::string& folder) {
-    return run_keeping(arguments, scene, folder);
+    return with_film(scene_of(scene).settings, folder, keys_of_film(arguments.keys),
+                     run_keeping(arguments, scene, folder));
   });
 }
 
@@ -179,10 +206,35 @@ ExitCode carry_out_resume(const Arguments& arguments) {
   if (arguments.out) throw BadScene("command line: --out: a run is resumed in its own folder; leave it out");
   check_command_line(arguments.keys);
   const std::filesystem::path folder = only_word(arguments, nullptr);
-  bool page = false;
+  std::optional<Settings> settings;
   if (std::error_code none; std::filesystem::exists(folder / "scene.ini", none))
-    page = Values(read_settings(folder / "scene.ini", arguments.keys)).toggle("output.report");
-  return with_page(page, folder, [&] { return resume(folder, arguments.keys); }, {});
+    settings = read_settings(folder / "scene.ini", arguments.keys);
+  const auto work = [&] {
+    const ExitCode code = resume(folder, arguments.keys);
+    return settings ? with_film(*settings, folder, keys_of_film(arguments.keys), code) : code;
+  };
+  return with_page(settings && Values(*settings).toggle("output.report"), folder, work, {});
+}
+
+ExitCode carry_out_xdmf(const Arguments& arguments) {
+  if (arguments.words.size() < 2)
+    throw BadScene("command line: xdmf what? Name the folder of a run, such as `delf xdmf results/collision`");
+  if (arguments.out)
+    throw BadScene("command line: --out: XDMF is written beside the rows that it points into; leave it out");
+  if (!arguments.keys.empty())
+    throw BadScene(fmt::format("command line: --{}: `xdmf` reads no scene; leave it out", arguments.keys[0].key));
+  return write_xdmf(only_word(arguments, nullptr));
+}
+
+ExitCode carry_out_film(const Arguments& arguments) {
+  if (arguments.words.size() < 2)
+    throw BadScene("command line: film what? Name the folder of a run, such as `delf film results/collision`");
+  if (arguments.out) throw BadScene("command line: --out: a film is made in the folder of its run; leave it out");
+  check_command_line(arguments.keys);
+  for (const Setting& s : arguments.keys)
+    if (section_of(s.key) != find_command("film").section)
+      throw BadScene(fmt::format("command line: --{}: the rows are recorded already; leave it out", s.key));
+  return make_film(only_word(arguments, nullptr), arguments.keys);
 }
 
 ExitCode carry_out_report(const Arguments& arguments) {
@@ -289,8 +341,11 @@ const std::vector<Command>& table() {
        {},
        false,
        false,
-       true},
-      {"resume", "delf resume DIR [--run.until=T] [--KEY=VALUE ...]", "go on with a run that was ended early",
+       true,
+       "film"},
+      {"resume",
+       "delf resume DIR [--run.until=T] [--KEY=VALUE ...]",
+       "go on with a run that was ended early",
        "Goes on with the run of the folder DIR from its last checkpoint, and leaves what the run would have given "
        "without "
        "a\n"
@@ -300,9 +355,15 @@ const std::vector<Command>& table() {
        "run.until\n"
        "(from time 0) or run.steps is raised. The keys are those that the run began with; besides these two, "
        "run.threads,\n"
-       "output.checkpoint, output.format, output.titles and output.report may change. It takes the same version of delf, on a "
+       "output.checkpoint, output.format, output.titles, output.report and output.film may change. It takes the same version of delf, on a "
        "processor with the same instructions.",
-       false, carry_out_resume},
+       false,
+       carry_out_resume,
+       {},
+       false,
+       false,
+       false,
+       "film"},
       {"plan",
        "delf plan SCENE [--latex] [--KEY=VALUE ...]",
        "what a run would solve, how, and at what cost",
@@ -415,6 +476,20 @@ const std::vector<Command>& table() {
        "has no script, loads nothing, and takes a million bytes at most. output.report = on makes it with the results of a\n"
        "command.",
        false, carry_out_report},
+      {"film", "delf film DIR [--film.seconds=S]", "a film of recorded rows, beside their energy",
+       "Makes a film of the recorded rows of the folder DIR, beside the energy error: curves over a line, maps of a mesh, the\n"
+       "orbit of two or three coordinates, else coordinates over time. Axes are the same in all frames. It is DIR/film.mp4,\n"
+       "made by ffmpeg, or DIR/film.gif of gnuplot where ffmpeg is missing, and figures/film.png, a frame that a page of\n"
+       "results shows with a link to it. The run may go on still, or have been killed. output.film = on makes it at the end of\n"
+       "a run.\n\n"
+       "The keys of its own section:",
+       false, carry_out_film, "film"},
+      {"xdmf", "delf xdmf DIR", "what ParaView opens recorded rows by",
+       "Writes fields.xdmf, a series of rows, and on a lattice surface.xdmf, over x and t, beside the fields.h5 of the folder\n"
+       "DIR, as output.xdmf = on does at the end of a run. They and frames.h5 point into fields.h5 and copy nothing. The run may\n"
+       "have been killed: its fields.h5 is then marked closed, after its last whole rows, so that any program opens it. While\n"
+       "the run goes on, nothing is written.",
+       false, carry_out_xdmf},
       {"reproduce", "delf reproduce [ID ...] [--out DIR] [--KEY=VALUE ...]", "published results, computed again",
        "Computes numbers and equations that papers print, each by a command of its own, and says which come out: reproduced;\n"
        "misprint, where the correction holds; differs, with the reason; or failed. ID is one of `delf list results`, or the\n"
@@ -439,7 +514,7 @@ std::vector<std::string> keys_of_other_commands(const std::string& command, cons
   std::vector<std::string> warnings;
   for (const Setting& s : keys) {
     const std::string_view section = section_of(s.key);
-    if (section == find_command(command).section) continue;
+    if (section == find_command(command).section || section == find_command(command).also) continue;
     std::vector<std::string> readers;
     for (const Command& other : commands())
       if (section == other.section) readers.push_back(fmt::format("`delf {}`", other.name));

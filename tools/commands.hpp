@@ -30,6 +30,7 @@ struct Command {
   bool reads_rows = false;        ///< takes --fields and --nearby; they are refused before any other is carried out
   bool writes_latex = false;      ///< takes --latex
   bool keeps_earlier = false;     ///< takes --overwrite
+  std::string_view also = {};     ///< a section of another command that it reads too
 };
 
 /// The commands of this version.

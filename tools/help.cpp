@@ -76,6 +76,7 @@ constexpr std::pair<std::string_view, const char*> purposes[] = {
     {"boundary", "the ends of an interval, the boundary of a mesh, the gain around a circle"},
     {"run", "how far, with which random numbers, on how many threads"},
     {"output", "what is recorded, drawn and written"},
+    {"figures", "which figures are drawn beside the usual ones"},
     {"stencil", "a stencil of your own"},
     {"mesh", "sites that move with the field"}};
 

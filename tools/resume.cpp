@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> harmless{"run.until",     "run.steps",     "run.threads",   "output.checkpoint",
-                                        "output.format", "output.titles", "output.report", "output.xdmf"};
+const std::vector<std::string> harmless{"run.until",     "run.steps",     "run.threads",     "output.checkpoint",
+                                        "output.format", "output.titles", "output.report",   "output.xdmf",
+                                        "output.film",   "film.seconds",  "figures.spectrum"};
 bool is_harmless(const std::string& key) { return std::ranges::find(harmless, key) != harmless.end(); }
 
 // Throws BadScene if a key that matters has another value than the run began with.

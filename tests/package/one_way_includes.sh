@@ -14,7 +14,7 @@ schemes="$stepping jets/expressions schemes schemes/theories schemes/methods sch
 results="$schemes tools/report tools/files tools/figures tools/scene tools/outcome"
 runs="$results tools/rows tools/measure tools/compare tools/warnings"
 commands="$runs tools/run tools/diagnosis tools/verify tools/complex tools/convergence tools/sweep tools/stability
-  tools/workprecision tools/page tools/reproduce"
+  tools/workprecision tools/page tools/film tools/reproduce"
 
 declare -A may_include=(
   [lattice]='lattice/space'  # a mesh is the space of a lattice
@@ -58,6 +58,7 @@ declare -A may_include=(
   [tools/workprecision]="$runs tools/peers"
   [tools/page]="$runs tools/complex"
   [tools/reproduce]="$runs tools/page"
+  [tools/film]="$runs tools/complex"
   [tools/peers]="$schemes"
   [tools/bench]="$schemes"
   [tools/python]="$commands tools"

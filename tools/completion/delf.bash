@@ -41,9 +41,12 @@ _delf() {
   case $command in
     help) mapfile -t COMPREPLY < <(compgen -W "$("$program" help 2>/dev/null | sed -n 's/^  delf \([a-z]*\) .*/\1/p') lagrangians measures" -- "$word") ;;
     list) mapfile -t COMPREPLY < <(compgen -W "theories stencils schemes states scenes results" -- "$word") ;;
-    resume)
+    resume | film | report | xdmf)
       if [[ $word == -* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "--run.until= --run.steps= --run.threads= --output.checkpoint=" -- "$word")
+        local options='--run.until= --run.steps= --run.threads= --output.checkpoint='
+        [[ $command == film ]] && options=--film.seconds=
+        [[ $command == report ]] && options=--out
+        mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
       else
         mapfile -t COMPREPLY < <(compgen -d -- "$word")
       fi

@@ -15,6 +15,7 @@
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/figure_style.hpp"
 #include "tools/files/text_file.hpp"
+#include "tools/report/field_symbol.hpp"
 
 namespace delf {
 namespace {
@@ -30,8 +31,10 @@ std::string title(const ComplexScene& c, const std::string& what) {
                                   c.mesh_in_words()));
 }
 
-double value_at(const ComplexScene& c, const MeshFilm::Frame& frame, std::size_t point) {
-  return frame.values[point * c.fields.size()];
+std::string shown_name(const ComplexScene& c, std::size_t field = 0) { return field_symbol(c.fields[field].name); }
+
+double value_at(const ComplexScene& c, const MeshFilm::Frame& frame, std::size_t point, std::size_t field = 0) {
+  return frame.values[point * c.fields.size() + field];
 }
 
 // The bar of colours beside maps, with what they show above it.
@@ -57,16 +60,16 @@ std::string curves(const ComplexScene& c, const MeshFilm& film, const fs::path& 
     table += "\n\n";
     plot += fmt::format("{} 'curves' index {} using 1:2 with lines lw 1.6 lc rgb '{}' title '{}'",
                         f == 0 ? "plot" : ",", f, component_colour(f),
-                        c.time == MeshTime::none ? c.fields.front().name : fmt::format("t = {:.4g}", frame.time));
+                        c.time == MeshTime::none ? shown_name(c) : fmt::format("t = {:.4g}", frame.time));
   }
   write_text_file(scratch / "curves", table);
-  return title(c, c.fields.front().name + (c.time == MeshTime::none ? "" : " at some times")) +
+  return title(c, shown_name(c) + (c.time == MeshTime::none ? "" : " at some times")) +
          fmt::format(
              "set lmargin at screen 0.105\nset rmargin at screen 0.97\nset bmargin at screen 0.12\n"
              "set tmargin at screen (top-0.05)\nset key at screen 0.97,(top-0.005) right top horizontal textcolor rgb "
              "'#333333'\n"
              "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xlabel 'space x'\nset ylabel '{}' noenhanced\n{}\n",
-             c.fields.front().name, plot);
+             shown_name(c), plot);
 }
 
 // A facet of gnuplot's surfaces; the third corner of a triangle stands twice.
@@ -80,13 +83,26 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
   if (mesh.cells() > most_cells) return {};
   const bool flat = mesh.coordinates() < 3;
   const DrawnMesh drawn(mesh);
-  std::vector<double> shown;
+  // One field at all times; of two or more the first two, in the beginning and in the end.
+  struct Panel {
+    const MeshFilm::Frame& frame;
+    std::size_t field;
+  };
+  std::vector<Panel> all;
+  const bool pair = c.fields.size() > 1 && !c.is_one_problem();
   for (const MeshFilm::Frame& frame : film.frames())
-    for (std::size_t i = 0; i < mesh.points.size(); ++i) shown.push_back(value_at(c, frame, i));
+    if (!pair) all.push_back({frame, 0});
+    else if (&frame == &film.frames().front() || &frame == &film.frames().back())
+      all.push_back({frame, 0}), all.push_back({frame, 1});
+  std::vector<double> shown;
+  for (const Panel& panel : all)
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) shown.push_back(value_at(c, panel.frame, i, panel.field));
   const ColourScale scale = colour_scale(shown);
-  const std::size_t count = film.frames().size();
+  const std::size_t count = all.size();
   std::string body =
-      gnuplot_colours(scale) + title(c, c.fields.front().name + (count == 1 ? "" : " at some times")) +
+      gnuplot_colours(scale) +
+      title(c, (pair ? shown_name(c) + " and " + shown_name(c, 1) : shown_name(c)) +
+                   (count == 1 ? "" : " at some times")) +
       fmt::format(
           "set pm3d {} corners2color mean\nunset key\nset border 0\nunset tics\nset cbtics {} scale 0.3\n"
           "set multiplot layout {},{} margins screen 0.03,0.86,0.04,(top-0.05) spacing screen 0.02,0.07\n{}",
@@ -96,7 +112,7 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
     std::string table;
     const auto corner = [&](std::int32_t p) {
       const Mesh::Point& at = drawn.points[delf::at(p)];
-      const double v = value_at(c, film.frames()[f], delf::at(drawn.of[delf::at(p)]));
+      const double v = value_at(c, all[f].frame, delf::at(drawn.of[delf::at(p)]), all[f].field);
       table += flat ? fmt::format("{} {} {}\n", at[0], at[1], v) : fmt::format("{} {} {} {}\n", at[0], at[1], at[2], v);
     };
     for (int cell = 0; cell < mesh.cells(); ++cell) {
@@ -106,9 +122,10 @@ std::string maps(const ComplexScene& c, const Mesh& mesh, const MeshFilm& film, 
     const std::string file = fmt::format("map{}", f);
     write_text_file(scratch / file, table);
     // one scale for all, shown beside them once
-    body += f == 0 ? colour_bar(c.fields.front().name) : "unset colorbox\nunset label\n";
+    body += f == 0 ? colour_bar(pair ? "fields" : shown_name(c)) : "unset colorbox\nunset label\n";
     if (!c.is_one_problem())
-      body += fmt::format("set title 't = {:.4g}' offset 0,0.1 textcolor rgb '#333333'\n", film.frames()[f].time);
+      body += fmt::format("set title '{}t = {:.4g}' offset 0,0.1 textcolor rgb '#333333' noenhanced\n",
+                          pair ? shown_name(c, all[f].field) + ", " : "", all[f].frame.time);
     body += fmt::format("splot '{}' using {} with pm3d\n", file, flat ? "1:2:3" : "1:2:3:4");
   }
   return body + "unset multiplot\n";
@@ -144,7 +161,7 @@ std::string spacetime(const ComplexScene& c, std::span<const double> values, std
   const ColourScale scale =
       values.empty() ? ColourScale{0, std::max(1.0, *std::ranges::max_element(shown)), false} : colour_scale(shown);
   return gnuplot_colours(scale) +
-         title(c, values.empty() ? "levels of the plan, in their order" : c.fields.front().name + " on its stencils") +
+         title(c, values.empty() ? "levels of the plan, in their order" : shown_name(c) + " on its stencils") +
          fmt::format(
              "set pm3d map corners2color {}\n{}unset key\nunset grid\nset lmargin at screen 0.105\n"
              "set rmargin at screen 0.86\nset bmargin at screen 0.12\nset tmargin at screen top\nset xlabel 'space x'\n"
@@ -153,8 +170,7 @@ std::string spacetime(const ComplexScene& c, std::span<const double> values, std
              "pm3d\n",
              values.empty() ? "c1" : "mean",
              c.cells() <= most_with_edges ? "set pm3d border lc rgb '#808080' lw 0.3\n" : "",
-             nice_step(scale.most - scale.least, 8), colour_bar(values.empty() ? "level" : c.fields.front().name),
-             name);
+             nice_step(scale.most - scale.least, 8), colour_bar(values.empty() ? "level" : shown_name(c)), name);
 }
 
 // A line from end to end of a segment at each time when it acts.

@@ -33,6 +33,9 @@ ListedCells::ListedCells(const ComplexScene& scene) {
 
 bool has_xdmf(const ComplexScene& scene) { return scene.coordinates() == 2 || scene.coordinates() == 3; }
 
+namespace {
+
+/// fields.xdmf
 std::string xdmf(const ComplexScene& scene, std::span<const double> times) {
   const std::optional<DrawnMesh> drawn = scene.space ? std::optional<DrawnMesh>(scene.space->mesh) : std::nullopt;
   const bool is_joined = drawn && drawn->points.size() > scene.space->mesh.points.size();
@@ -96,6 +99,21 @@ std::string xdmf(const ComplexScene& scene, std::span<const double> times) {
     text += "</Grid>\n";
   }
   return text + "</Grid></Domain></Xdmf>\n";
+}
+
+}  // namespace
+
+void write_mesh_xdmf(const ComplexScene& scene, const std::filesystem::path& folder, std::span<const double> times) {
+  std::vector<std::int32_t> copies;
+  if (scene.space) {
+    const DrawnMesh drawn(scene.space->mesh);
+    copies.assign(drawn.copied(scene.space->mesh).begin(), drawn.copied(scene.space->mesh).end());
+  }
+  std::vector<std::string> names;
+  for (const auto& field : scene.fields) names.push_back(field.name);
+  write_frames_file(folder, {{"/field", names}}, times.size(), at(scene.sites()),
+                    {.together = false, .moving = {}, .copies = copies});
+  write_text_file(folder / "fields.xdmf", xdmf(scene, times));
 }
 
 }  // namespace delf

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "tools/complex/complex_scene.hpp"
@@ -19,7 +19,7 @@ struct ListedCells {
 /// Whether there is a fields.xdmf: XDMF takes two or three coordinates, of space, or t, x and y of a finite complex.
 bool has_xdmf(const ComplexScene&);
 
-/// fields.xdmf, by which ParaView opens the frames of fields.h5 at these times; they are in frames.h5 one by one.
-std::string xdmf(const ComplexScene&, std::span<const double> times);
+/// Writes fields.xdmf, by which ParaView opens the frames of fields.h5 at these times, and frames.h5, which has them one by one.
+void write_mesh_xdmf(const ComplexScene&, const std::filesystem::path& folder, std::span<const double> times);
 
 }  // namespace delf

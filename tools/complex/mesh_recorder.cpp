@@ -10,10 +10,7 @@
 #include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "schemes/theories/theory_on_space.hpp"
-#include "tools/complex/drawn_mesh.hpp"
 #include "tools/complex/mesh_files.hpp"
-#include "tools/files/frames_file.hpp"
-#include "tools/files/text_file.hpp"
 #include "tools/run/stepping.hpp"
 
 namespace delf {
@@ -112,15 +109,7 @@ void MeshRecorder::visit(SavedState& state) {
 
 void MeshRecorder::close() {
   Recorder::close();
-  if (!c_.scene.fields || !has_xdmf(c_)) return;
-  std::vector<std::int32_t> copies;
-  if (c_.space) {
-    const DrawnMesh drawn(c_.space->mesh);
-    copies.assign(drawn.copied(c_.space->mesh).begin(), drawn.copied(c_.space->mesh).end());
-  }
-  write_frames_file(folder_, {{"/field", names_of(c_).of[Role::field]}}, times_.size(), at(c_.sites()),
-                    {.together = false, .moving = {}, .copies = copies});
-  write_text_file(folder_ / "fields.xdmf", xdmf(c_, times_));
+  if (c_.scene.fields && has_xdmf(c_)) write_mesh_xdmf(c_, folder_, times_);
 }
 
 }  // namespace delf

@@ -18,9 +18,19 @@ std::string energy_figure(const FigureSource& source, const std::filesystem::pat
   double largest = 0;
   for (const auto& i : intervals) largest = std::max({largest, std::abs(i.least), std::abs(i.most)});
 
-  // An error beyond the energy itself grows through many powers of ten: |E − E₀| on a logarithmic axis. Others have a
-  // sign, and a linear axis in units of the power of ten that they have.
-  const bool grown = largest > 10, round_off = largest < 1e-12;
+  // An error beyond the energy itself, or ten thousand times as large in the last tenth of the run as in the first, grows
+  // through many powers of ten: |E − E₀| on a logarithmic axis. Others have a sign, and a linear axis in units of the power
+  // of ten that they have.
+  constexpr double decades = 1e4, rounding = 1e-16;
+  const std::size_t tenth = std::max<std::size_t>(2, intervals.size() / 10);
+  const auto largest_in = [&](std::size_t begin) {
+    double most = rounding;
+    for (std::size_t n = begin; n < std::min(begin + tenth, intervals.size()); ++n)
+      most = std::max({most, -intervals[n].least, intervals[n].most});
+    return most;
+  };
+  const bool grown = largest > 10 || largest_in(intervals.size() - tenth) > decades * largest_in(0);
+  const bool round_off = largest < 1e-12;
   const double power = grown ? 0 : largest > 0 ? std::floor(std::log10(largest)) : -16;
   // An interval of more than one row is a band from its least to its largest value.
   const bool is_band = !grown && std::ranges::any_of(intervals, [](const auto& i) { return i.most > i.least; });

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -100,10 +101,28 @@ double nice_step(double range, int most) {
   return 10 * power;
 }
 
-std::string component_colour(std::size_t component) {
-  constexpr const char* colours[] = {line_colour, "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#666666"};
-  return colours[component % std::size(colours)];
+std::string panel_tics(double from, double to, double width, std::optional<double> gap) {
+  constexpr double letter = 0.0098;  // of the width of a figure
+  const auto length = [](double tic) { return letter * static_cast<double>(fmt::format("{:.6g}", tic).size()); };
+  double step = 0, first = 0, last = 0;
+  for (int most = gap ? 5 : 10; most > 0; --most) {
+    step = nice_step(to - from, most);
+    first = step * std::ceil(from / step - 1e-9), last = step * std::floor(to / step + 1e-9);
+    const double longest = std::max({length(first), length(last), length(last - step)});
+    if (longest + 1.5 * letter <= width * step / (to - from)) break;
+  }
+  const double beyond = (length(last) + length(from)) / 2 + letter - width * (to - last) / (to - from);
+  if (gap && beyond > *gap && last > first) last -= step;
+  return fmt::format("set xtics {},{},{}\n", first, step, last + step / 100);
 }
+
+std::string component_colour(std::size_t component) {
+  constexpr std::array<const char*, line_colours> colours{line_colour, "#d55e00", "#1a1a80",
+                                                          "#20a39e",   "#4d2c14", "#555555"};
+  return colours[component % colours.size()];
+}
+
+std::string gnuplot_style() { return style; }
 
 std::string figure_script(const std::string& name, const std::string& body, const FigureForm& form) {
   std::string script;

@@ -6,11 +6,15 @@
 
 #include "tools/figures/drawing.hpp"
 #include "tools/figures/energy_figure.hpp"
+#include "tools/figures/error_figure.hpp"
 #include "tools/figures/figure_style.hpp"
+#include "tools/figures/phase_figure.hpp"
 #include "tools/figures/section_figure.hpp"
 #include "tools/figures/spacetime_figure.hpp"
+#include "tools/figures/spectrum_figure.hpp"
 #include "tools/figures/trajectory_figure.hpp"
 #include "tools/figures/waveforms_figure.hpp"
+#include "tools/report/field_symbol.hpp"
 
 namespace delf {
 
@@ -22,9 +26,10 @@ struct Figure {
   const char* name;
   std::string (*body)(const FigureSource&, const fs::path& scratch);  // empty: there is nothing to show
 };
-constexpr Figure all[] = {{"spacetime", spacetime_figure},   {"waveforms", waveforms_figure},
-                          {"trajectory", trajectory_figure}, {"orbit", orbit_figure},
-                          {"section", section_figure},       {"energy", energy_figure}};
+constexpr Figure all[] = {
+    {"spacetime", spacetime_figure},   {"waveforms", waveforms_figure}, {"error", error_figure},
+    {"trajectory", trajectory_figure}, {"orbit", orbit_figure},         {"phase", phase_figure},
+    {"section", section_figure},       {"spectrum", spectrum_figure},   {"energy", energy_figure}};
 
 }  // namespace
 
@@ -35,16 +40,16 @@ std::vector<double> drawn_space(const FigureSource& source) {
     for (int i = 0; i <= cells; ++i) even.push_back(source.lattice.length() * i / cells);
     return even;
   }
-  std::vector<double> space = source.film.space();
+  std::vector<double> space = source.thinned.space();
   if (source.lattice.is_circle()) space.push_back(source.lattice.length());
   return space;
 }
 
 std::vector<double> drawn_sites(const FigureSource& source, int frame, std::size_t component) {
-  const auto row = source.film.frame(frame);
+  const auto row = source.thinned.frame(frame);
   const double unit = source.angle && component != source.names.drawn_mesh() ? 2 * std::numbers::pi : 1;
   std::vector<double> values;
-  for (std::size_t i = component; i < row.size(); i += source.film.components())
+  for (std::size_t i = component; i < row.size(); i += source.thinned.components())
     values.push_back(std::clamp(row[i] / unit, -1e30, 1e30));
   // φ(x + L) = φ(x) + 2π·winding + gain
   if (source.lattice.is_circle())
@@ -67,7 +72,7 @@ std::vector<double> drawn_frame(const FigureSource& source, int frame, std::size
 }
 
 std::string drawn_name(const FigureSource& source, std::size_t component) {
-  return source.film.components() == 1 ? "φ" : source.names.drawn()[component];
+  return field_symbol(source.names.drawn()[component]);
 }
 
 int tame_frames(const FigureSource& source) {
@@ -78,17 +83,17 @@ int tame_frames(const FigureSource& source) {
   };
   const double first = span_of(0);
   int tame = 1;
-  while (tame < source.film.frames() && (first == 0 || span_of(tame) <= much * first)) ++tame;
+  while (tame < source.thinned.frames() && (first == 0 || span_of(tame) <= much * first)) ++tame;
   return tame;
 }
 
 std::string subtitle(const FigureSource& source) {
   return source.theory + ", " + source.scheme +
-         (source.film.is_aliased() ? "; frames too far apart for this motion: what moves may be an alias" : "");
+         (source.thinned.is_aliased() ? "; frames too far apart for this motion: what moves may be an alias" : "");
 }
 
 std::vector<std::string> figure_names() {
-  std::vector<std::string> names{"field", "levels", "updates"};  // on a mesh
+  std::vector<std::string> names{"field", "levels", "updates", "film"};  // on a mesh, and of a film
   for (const Figure& figure : all) names.emplace_back(figure.name);
   return names;
 }

@@ -22,6 +22,10 @@ class ScratchFolder {
 /// says what is missing or what gnuplot complained of.
 std::string run_gnuplot(const std::filesystem::path& folder, const std::string& script);
 
+/// The line where there is no gnuplot.
+inline constexpr auto gnuplot_is_missing =
+    "gnuplot is missing: install the package gnuplot-nox (or gnuplot) to have figures";
+
 /// Text as a gnuplot string.
 std::string gnuplot_quoted(const std::string& text);
 

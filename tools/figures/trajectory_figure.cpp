@@ -17,23 +17,16 @@ namespace {
 // time, and every coordinate
 std::string table_of(const FigureSource& source) {
   std::string table;
-  for (int f = 0; f < source.film.frames(); ++f) {
-    table += fmt::format("{}", source.film.time(f));
-    for (std::size_t c = 0; c < source.film.components(); ++c)
+  for (int f = 0; f < source.thinned.frames(); ++f) {
+    table += fmt::format("{}", source.thinned.time(f));
+    for (std::size_t c = 0; c < source.thinned.components(); ++c)
       table += fmt::format(" {}", drawn_frame(source, f, c).front());
     table += "\n";
   }
   return table;
 }
 
-// q or q1, q2, ..., unless the theory has names of its own.
-std::string coordinate(const FigureSource& source, std::size_t component) {
-  const std::string name = source.names.drawn()[component];
-  if (!name.starts_with("phi")) return name;
-  return source.film.components() == 1 ? "q" : fmt::format("q{}", component + 1);
-}
-
-constexpr std::size_t in_a_panel = 6, most_trajectories = 4;  // as many curves as there are colours
+constexpr std::size_t in_a_panel = line_colours, most_trajectories = 4;
 
 // More coordinates than colours: panels of some, one below the other, each with the names of its curves.
 std::string panels(const FigureSource& source, std::size_t d) {
@@ -46,15 +39,16 @@ std::string panels(const FigureSource& source, std::size_t d) {
     const std::size_t first = p * in_a_panel, last = std::min(d, first + in_a_panel);
     double least = 1e300, most = -1e300;
     for (std::size_t c = first; c < last; ++c)
-      for (int f = 0; f < source.film.frames(); ++f) {
+      for (int f = 0; f < source.thinned.frames(); ++f) {
         const double q = drawn_frame(source, f, c).front();
         least = std::min(least, q), most = std::max(most, q);
       }
     if (most > least) body += fmt::format("set ytics {}\n", nice_step(most - least, 5));
     for (std::size_t c = first; c < last; ++c)
-      body += fmt::format(
-          "set label {} {} at graph {},1.0 right offset 0,0.55 font ',10' textcolor rgb '{}' noenhanced\n", 110 + c,
-          gnuplot_quoted(coordinate(source, c)), 1 - 0.07 * static_cast<double>(last - 1 - c), component_colour(c));
+      body +=
+          fmt::format("set label {} {} at graph {},1.0 right offset 0,0.55 font ',10' textcolor rgb '{}' noenhanced\n",
+                      110 + c, gnuplot_quoted(coordinate_name(source, c)), 1 - 0.07 * static_cast<double>(last - 1 - c),
+                      component_colour(c));
     if (p + 1 == count) body += "set format x '%h'\nset xlabel 'time t'\n";
     for (std::size_t c = first; c < last; ++c)
       body += fmt::format("{} 'trajectory' using 1:{} with lines lw 1.4 lc rgb '{}'", c == first ? "plot" : ",", c + 2,
@@ -70,7 +64,7 @@ constexpr auto rest = "set bmargin at screen 0.12\nset tmargin at screen top\nse
 // Both axes of an orbit have one unit: a narrow one has room for few numbers.
 std::string tics(const FigureSource& source) {
   double least[2] = {1e300, 1e300}, most[2] = {-1e300, -1e300};
-  for (int f = 0; f < source.film.frames(); ++f)
+  for (int f = 0; f < source.thinned.frames(); ++f)
     for (const std::size_t c : {0UL, 1UL}) {
       const double q = drawn_frame(source, f, c).front();
       least[c] = std::min(least[c], q), most[c] = std::max(most[c], q);
@@ -87,10 +81,16 @@ std::string tics(const FigureSource& source) {
 
 }  // namespace
 
+std::string coordinate_name(const FigureSource& source, std::size_t component) {
+  const std::string name = source.names.drawn()[component];
+  if (!name.starts_with("phi")) return name;
+  return source.thinned.components() == 1 ? "q" : fmt::format("q{}", component + 1);
+}
+
 std::string trajectory_figure(const FigureSource& source, const std::filesystem::path& scratch) {
-  if (source.lattice.space() != Space::point || source.film.frames() < 2) return {};
+  if (source.lattice.space() != Space::point || source.thinned.frames() < 2) return {};
   write_text_file(scratch / "trajectory", table_of(source));
-  const std::size_t d = source.film.components();
+  const std::size_t d = source.thinned.components();
   std::string body =
       figure_title(fmt::format("{}: the coordinate{} over time", source.scene, d == 1 ? "" : "s"),
                    fmt::format("{}{}", subtitle(source),
@@ -101,14 +101,14 @@ std::string trajectory_figure(const FigureSource& source, const std::filesystem:
       fmt::format(
           "set xlabel 'time t'\nset xrange [{}:{}]\nset label 103 '{}{}' at screen 0.025,0.4875 center rotate "
           "textcolor rgb '#333333'\n",
-          source.film.time(0), source.film.time(source.film.frames() - 1),
-          d == 1 ? coordinate(source, 0) : "coordinates", source.angle ? " / 2π" : "");
+          source.thinned.time(0), source.thinned.time(source.thinned.frames() - 1),
+          d == 1 ? coordinate_name(source, 0) : "coordinates", source.angle ? " / 2π" : "");
   if (d > in_a_panel) return body + panels(source, d);
   std::vector<std::vector<double>> curves(d);
   for (std::size_t c = 0; c < d; ++c)
-    for (int f = 0; f < source.film.frames(); ++f) curves[c].push_back(drawn_frame(source, f, c).front());
+    for (int f = 0; f < source.thinned.frames(); ++f) curves[c].push_back(drawn_frame(source, f, c).front());
   body += robust_range("y", curves) + key_of_curves(
-                                          d, [&](std::size_t c) { return coordinate(source, c); }, curves);
+                                          d, [&](std::size_t c) { return coordinate_name(source, c); }, curves);
   for (std::size_t c = 0; c < d; ++c)
     body += fmt::format("{} 'trajectory' using 1:{} with lines lw 1.4 lc rgb '{}'", c == 0 ? "plot" : ",", c + 2,
                         component_colour(c));
@@ -116,14 +116,16 @@ std::string trajectory_figure(const FigureSource& source, const std::filesystem:
 }
 
 std::string orbit_figure(const FigureSource& source, const std::filesystem::path& scratch) {
-  if (source.lattice.space() != Space::point || source.film.frames() < 2 || source.film.components() != 2) return {};
+  if (source.lattice.space() != Space::point || source.thinned.frames() < 2 || source.thinned.components() != 2)
+    return {};
   write_text_file(scratch / "orbit", table_of(source));
   return figure_title(fmt::format("{}: the orbit", source.scene), subtitle(source)) + rest +
          fmt::format(
              "set xlabel {} noenhanced\nset ylabel {} noenhanced\nset size ratio -1\n{}plot 'orbit' using 2:3 with "
              "lines "
              "lw 1.2 lc rgb '{}'\n",
-             gnuplot_quoted(coordinate(source, 0)), gnuplot_quoted(coordinate(source, 1)), tics(source), line_colour);
+             gnuplot_quoted(coordinate_name(source, 0)), gnuplot_quoted(coordinate_name(source, 1)), tics(source),
+             line_colour);
 }
 
 }  // namespace delf

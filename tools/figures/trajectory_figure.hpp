@@ -7,6 +7,9 @@
 
 namespace delf {
 
+/// The name of a coordinate, q, or q1, q2, … of several, unless the theory has one of its own.
+std::string coordinate_name(const FigureSource&, std::size_t component);
+
 /// Mechanics on a point: the coordinates over time. Returns gnuplot commands; their data is written to `scratch`. Empty
 /// for a field in space.
 std::string trajectory_figure(const FigureSource&, const std::filesystem::path& scratch);

@@ -18,17 +18,17 @@ namespace {
 constexpr int most_panels = 6, columns = 3;
 
 std::vector<int> chosen_frames(const FigureSource& source) {
-  const Film& film = source.film;
+  const ThinnedRows& thinned = source.thinned;
   std::vector<double> times = source.times;
   const int tame = tame_frames(source), panels = std::min(tame, most_panels);
   if (times.empty())
     for (int p = 0; p < panels; ++p)
-      times.push_back(film.time(0) + (film.time(tame - 1) - film.time(0)) * p / std::max(1, panels - 1));
+      times.push_back(thinned.time(0) + (thinned.time(tame - 1) - thinned.time(0)) * p / std::max(1, panels - 1));
   std::vector<int> frames;
   for (const double t : times) {
     int nearest = 0;
-    for (int f = 1; f < film.frames(); ++f)
-      if (std::abs(film.time(f) - t) < std::abs(film.time(nearest) - t)) nearest = f;
+    for (int f = 1; f < thinned.frames(); ++f)
+      if (std::abs(thinned.time(f) - t) < std::abs(thinned.time(nearest) - t)) nearest = f;
     frames.push_back(nearest);
   }
   std::sort(frames.begin(), frames.end());
@@ -64,7 +64,7 @@ std::string exact_curve(const FigureSource& source, double t, std::size_t compon
 }  // namespace
 
 std::string waveforms_figure(const FigureSource& source, const std::filesystem::path& scratch) {
-  if (source.film.frames() == 0 || source.lattice.space() == Space::point) return {};
+  if (source.thinned.frames() == 0 || source.lattice.space() == Space::point) return {};
   const auto frames = chosen_frames(source);
   const auto space = drawn_space(source);
   const int panels = static_cast<int>(frames.size());
@@ -76,7 +76,7 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
   std::vector<std::vector<double>> curves;  // of each component, in all panels
   bool turned = false;
   std::vector<std::size_t> components;
-  for (std::size_t c = 0; c < source.film.components(); ++c)
+  for (std::size_t c = 0; c < source.thinned.components(); ++c)
     if (c != source.names.drawn_mesh()) components.push_back(c);
   curves.resize(components.size());
   for (const int f : frames) {
@@ -93,7 +93,7 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
         table += fmt::format("{} {}\n", nodes[i], shown.back());
       }
       table += "\n\n";
-      const std::string curve = exact_curve(source, source.film.time(f), which, turns, shown);
+      const std::string curve = exact_curve(source, source.thinned.time(f), which, turns, shown);
       exact += curve, exact_curves += !curve.empty();
     }
   }
@@ -102,33 +102,37 @@ std::string waveforms_figure(const FigureSource& source, const std::filesystem::
 
   const ColourScale scale = colour_scale(shown);
   const double room = 0.06 * (scale.most - scale.least);
-  const int rows = (panels + columns - 1) / columns;
+  const int rows = (panels + columns - 1) / columns, in_a_row = std::min(columns, panels);
+  constexpr double between = 0.03;
+  const double width = (0.97 - 0.105 - between * (in_a_row - 1)) / in_a_row;
   std::string body =
       figure_title(
-          fmt::format("{}: waveforms of {}", source.scene, components.size() > 1 ? "the fields" : "φ"),
+          fmt::format("{}: waveforms of {}", source.scene,
+                      components.size() > 1 ? "the fields" : drawn_name(source, components[0])),
           fmt::format("{}, {}{}{}", source.theory, source.scheme, turned ? "; multiples of 2π are subtracted" : "",
                       exact_curves > 0 ? "; grey: exact" : "")) +
       (exact_curves > 0 ? "if (!titles) set label 105 'grey: exact' at screen 0.97,0.975 right font ',11' "
                           "textcolor rgb '#666666'\n"
                         : "") +
       fmt::format(
-          "set multiplot layout {},{} margins screen 0.105,0.97,0.125,(top-0.035) spacing screen 0.03,0.085\n"
-          "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics {}\n",
-          rows, std::min(columns, panels), space.front(), space.back(), scale.least - room, scale.most + room,
-          nice_step(space.back() - space.front(), panels > 1 ? 5 : 10));
+          "set multiplot layout {},{} margins screen 0.105,0.97,0.125,(top-0.035) spacing screen {},0.085\n"
+          "set grid lc rgb '#e4e4e4' lt 1 lw 0.7\nset xrange [{}:{}]\nset yrange [{}:{}]\n",
+          rows, in_a_row, between, space.front(), space.back(), scale.least - room, scale.most + room);
   for (int p = 0; p < panels; ++p) {
     const bool left = p % columns == 0, bottom = p + columns >= panels;
     body += fmt::format("set format y '{}'\nset format x '{}'\nset ylabel '{}'\nset xlabel '{}'\n", left ? "%h" : "",
                         bottom ? "%h" : "",
-                        left ? std::string(components.size() > 1 ? "fields" : "φ") + (source.angle ? " / 2π" : "") +
-                                   (turned ? ", less whole turns" : "")
+                        left ? std::string(components.size() > 1 ? "fields" : drawn_name(source, components[0])) +
+                                   (source.angle ? " / 2π" : "") + (turned ? ", less whole turns" : "")
                              : "",
                         bottom ? "space x" : "");
+    body += panel_tics(space.front(), space.back(), width,
+                       (p + 1) % in_a_row != 0 && p + 1 < panels ? std::optional(between) : std::nullopt);
     body += fmt::format("set label 1 't = {:.4g}' at graph 0,1 left offset 0,0.7 textcolor rgb '#333333'\n",
-                        source.film.time(frames[p]));
+                        source.thinned.time(frames[p]));
     if (p == 0)
       body += key_of_curves(
-          components.size(), [&](std::size_t c) { return source.names.drawn()[components[c]]; }, curves);
+          components.size(), [&](std::size_t c) { return drawn_name(source, components[c]); }, curves);
     const int first = p * static_cast<int>(components.size());
     body += "plot ";
     for (int c = 0; c < static_cast<int>(components.size()) && first + c < exact_curves; ++c)

@@ -174,6 +174,14 @@ std::optional<std::vector<double>> FieldsReader::positions() const {
   return read_slice(dataset, 1, &none, &sites, x.data()) ? std::optional(x) : std::nullopt;
 }
 
+std::optional<std::vector<double>> FieldsReader::moving_positions(int frame) const {
+  const Hdf5Handle dataset = open_dataset(file_, "mesh");
+  const hsize_t from[2] = {static_cast<hsize_t>(frame), 0}, count[2] = {1, static_cast<hsize_t>(sites())};
+  if (!dataset || rank_of(dataset) != 2) return std::nullopt;
+  std::vector<double> x(count[1]);
+  return read_slice(dataset, 2, from, count, x.data()) ? std::optional(x) : std::nullopt;
+}
+
 std::optional<std::vector<double>> FieldsReader::coordinates() const {
   const Hdf5Handle dataset(H5Dopen2(file_, "space", H5P_DEFAULT), H5Dclose);
   if (!dataset || rank_of(dataset) != 2) return positions();

@@ -34,6 +34,8 @@ class FieldsReader final : public RowsFile {
   std::string scene() const;
   /// The positions of the sites, /space; nothing where it is not one number for each.
   std::optional<std::vector<double>> positions() const;
+  /// The positions of sites that move in a frame, /mesh; nothing where there are none.
+  std::optional<std::vector<double>> moving_positions(int frame) const;
   /// All of /space, on a mesh n × dimension, row by row; nothing where it is neither that nor one number for each site.
   std::optional<std::vector<double>> coordinates() const;
 

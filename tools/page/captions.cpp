@@ -6,14 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
 #include <sstream>
 
 #include "lattice/index.hpp"
+#include "tools/figures/spectrum_figure.hpp"
 #include "tools/files/fields_reader.hpp"
 #include "tools/page/markup.hpp"
+#include "tools/report/field_symbol.hpp"
 
 namespace delf {
 namespace {
@@ -49,9 +52,9 @@ std::string time_of(const FieldsReader& rows, std::size_t frame) {
 std::string name_of(const FieldsReader& rows, std::size_t component) {
   const std::vector<std::string> names = rows.names();
   const std::string name = component < names.size() ? names[component] : "phi";
-  const bool one = rows.components() == 1;
-  if (rows.sites() == 1 && name.starts_with("phi")) return one ? "q" : fmt::format("q{}", component + 1);
-  return one && name == "phi" ? "φ" : name;
+  if (rows.sites() == 1 && name.starts_with("phi"))
+    return rows.components() == 1 ? "q" : fmt::format("q{}", component + 1);
+  return field_symbol(name);
 }
 
 /// The places where a row changes fastest: where |Δφ| is greatest among its neighbours, and half of the largest or more.
@@ -164,6 +167,74 @@ FigureCaption of_point(const ResultFolder& folder, const std::string& title) {
   return caption;
 }
 
+FigureCaption of_phase(const ResultFolder& folder) {
+  FigureCaption caption = of_point(folder, "Phase portrait: the momentum over its coordinate");
+  if (const auto error = number_in(folder.result("summary"), "energy_error_max"))
+    caption.finding +=
+        fmt::format("The energy, whose levels the motion stays on, is kept to {:.2g} of itself.", *error);
+  return caption;
+}
+
+FigureCaption of_error(const ResultFolder& folder) {
+  FigureCaption caption{"The error against the exact solution, over space and time", {}, {}};
+  const Json* summary = folder.result("summary");
+  const auto largest = number_in(summary, "error_linf"), mean = number_in(summary, "error_l2");
+  if (largest && mean)
+    caption.finding = fmt::format("At t = {} the error is {:.2g} where it is largest, and {:.2g} in L2.",
+                                  value_text(summary, "time"), *largest, *mean);
+  else caption.finding = "The solution can be compared with for a part of the run only.";
+  caption.table = table_of("Errors of the last row",
+                           {{"time", "time"}, {"largest error", "error_linf"}, {"error in L2", "error_l2"}},
+                           summary ? std::vector<Json>{*summary} : std::vector<Json>());
+  return caption;
+}
+
+/// The largest wave of a row, and how much of all is in waves shorter than four cells.
+FigureCaption of_spectrum(const ResultFolder& folder) {
+  FigureCaption caption{
+      "The waves of the field: their size over the wave number, and the frequencies on the lattice", {}, {}};
+  const auto rows = rows_of(folder);
+  const auto x = rows ? rows->positions() : std::nullopt;
+  if (!x || x->size() < 4) return caption;
+  const std::size_t N = x->size(), last = at(rows->frames()) - 1;
+  const double pi = std::acos(-1.0), L = (x->at(1) - x->at(0)) * static_cast<double>(N);
+  PageTable t{fmt::format("The largest waves of {}", name_of(*rows, 0)), {"t", "wave number", "size"}, {}};
+  for (const std::size_t frame : {std::size_t{0}, last}) {
+    std::vector<double> row = component_of(*rows, frame, 0);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      row[i] -= 2 * pi * rows->winding().value_or(0) * static_cast<double>(i) / static_cast<double>(N);
+    std::vector<double> sizes = mode_sizes(row);
+    if (sizes.size() < 2) return caption;
+    sizes[0] = 0;
+    const auto largest = std::ranges::max_element(sizes);
+    double all = 0, shortest = 0;
+    for (std::size_t n = 1; n < sizes.size(); ++n) (4 * n > N ? shortest : all) += sizes[n] * sizes[n];
+    all += shortest;
+    caption.finding += fmt::format(
+        "At t = {} the largest wave has k = {:.3g}; waves shorter than four cells hold {:.2g} of all. ",
+        time_of(*rows, frame), 2 * pi * static_cast<double>(largest - sizes.begin()) / L, all > 0 ? shortest / all : 0);
+    std::vector<std::size_t> order(sizes.size());
+    for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
+    std::ranges::sort(order, std::greater(), [&](std::size_t n) { return sizes[n]; });
+    for (std::size_t n = 0; n < std::min<std::size_t>(8, order.size()); ++n)
+      t.rows.push_back({time_of(*rows, frame), fmt::format("{:.4g}", 2 * pi * static_cast<double>(order[n]) / L),
+                        fmt::format("{:.4g}", sizes[order[n]])});
+  }
+  caption.table = table(t);
+  return caption;
+}
+
+FigureCaption of_film(const ResultFolder& folder) {
+  const auto rows = rows_of(folder);
+  FigureCaption caption = rows && rows->sites() == 1 ? of_point(folder, "") : of_rows(folder, "");
+  caption.title = "A frame of the film, the energy error beside it";
+  if (rows)
+    caption.finding = fmt::format("The film goes from t = {} to t = {}. ", time_of(*rows, 0),
+                                  time_of(*rows, at(rows->frames()) - 1)) +
+                      caption.finding;
+  return caption;
+}
+
 double largest_of(const std::vector<double>& values, std::size_t begin, std::size_t end, std::size_t* where = nullptr) {
   double largest = 0;
   for (std::size_t n = begin; n < end; ++n)
@@ -176,7 +247,7 @@ double largest_of(const std::vector<double>& values, std::size_t begin, std::siz
 
 FigureCaption of_energy(const ResultFolder& folder) {
   FigureCaption caption{"The relative change of the energy over time", {}, csv_table(folder, "series.csv", 41)};
-  const auto *error = folder.column("energy_error"), *time = folder.column("time");
+  const auto *error = folder.series.column("energy_error"), *time = folder.series.column("time");
   if (!error || !time) return caption;
   const std::size_t n = error->size(), part = std::max<std::size_t>(1, n / 10);
   std::size_t where = 0;
@@ -333,6 +404,10 @@ FigureCaption caption_of(const ResultFolder& folder, const std::string& figure) 
          return FigureCaption{"The crossings of the Poincaré section", "Each point is a crossing.",
                               csv_table(f, "section.csv", 21)};
        }},
+      {"phase", of_phase},
+      {"error", of_error},
+      {"spectrum", of_spectrum},
+      {"film", of_film},
       {"energy", of_energy},
       {"levels",
        [](const auto&) {

@@ -54,8 +54,10 @@ std::string figure_html(const PageFigure& figure, const FigureCaption& caption, 
           ? paragraph(
                 fmt::format("{} is too large for this page, or of a format that a browser does not draw.", figure.file))
           : fmt::format("<img alt=\"{}\" src=\"{}\"/>\n", escaped(caption.title + beside), figure.source);
-  return fmt::format("<figure>\n{}<figcaption>{}.{} {}</figcaption>\n{}</figure>\n", image, escaped(caption.title),
-                     escaped(beside), escaped(caption.finding), details("The numbers as a table", caption.table));
+  const std::string link =
+      figure.film.empty() ? "" : fmt::format(" <a href=\"{0}\">Watch the film, {0}</a>.", escaped(figure.film));
+  return fmt::format("<figure>\n{}<figcaption>{}.{} {}{}</figcaption>\n{}</figure>\n", image, escaped(caption.title),
+                     escaped(beside), escaped(caption.finding), link, details("The numbers as a table", caption.table));
 }
 
 std::string figures_section(const ResultFolder& folder, const std::vector<PageFigure>& figures) {
@@ -94,12 +96,12 @@ std::string verification_section(const ResultFolder& folder) {
 
 std::string monitors_section(const ResultFolder& folder) {
   PageTable t{"Columns of series.csv", {"column", "first", "least", "largest", "last"}, {}};
-  for (std::size_t c = 2; c < folder.series.size(); ++c) {
-    std::vector<double> values = folder.series[c];
+  for (std::size_t c = 2; c < folder.series.columns.size(); ++c) {
+    std::vector<double> values = folder.series.columns[c];
     std::erase_if(values, [](double v) { return !std::isfinite(v); });
     if (values.empty()) continue;
     const auto [least, most] = std::ranges::minmax(values);
-    t.rows.push_back({folder.series_names[c], number_text(values.front()), number_text(least), number_text(most),
+    t.rows.push_back({folder.series.names[c], number_text(values.front()), number_text(least), number_text(most),
                       number_text(values.back())});
   }
   const std::string html = table(t) + details("Some rows of series.csv", csv_table(folder, "series.csv", 31));
@@ -294,23 +296,40 @@ std::string page_with(const std::vector<ResultFolder>& folders, const std::vecto
   return document(title, fmt::format("<main>\n<h1>{}</h1>\n{}{}</main>\n", escaped(title), lead, with_contents(parts)));
 }
 
+/// A path as a relative URL.
+std::string url_of(const fs::path& path) {
+  std::string url;
+  for (const char c : path.generic_string())
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("-._~/").find(c) != std::string_view::npos)
+      url += c;
+    else url += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return url.starts_with('/') ? "file://" + url : url;
+}
+
 }  // namespace
 
-std::string page_of(const std::vector<fs::path>& paths) {
+std::string page_of(const std::vector<fs::path>& paths, const fs::path& place) {
   const std::vector<ResultFolder> folders(paths.begin(), paths.end());
   constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
-  std::string page = page_with(folders, page_figures(folders, no_limit));
+  const auto figures_of = [&](std::size_t most) {
+    auto figures = page_figures(folders, most);
+    for (std::size_t f = 0; f < folders.size(); ++f)
+      for (PageFigure& figure : figures[f])
+        if (!figure.film.empty()) figure.film = url_of(fs::proximate(folders[f].path / figure.film, place));
+    return figures;
+  };
+  std::string page = page_with(folders, figures_of(no_limit));
   if (page.size() <= most_bytes) return page;
   // Figures have the room that the rest of the page leaves.
-  const std::size_t rest = page_with(folders, page_figures(folders, 0)).size();
-  return page_with(folders, page_figures(folders, most_bytes - std::min(rest, most_bytes)));
+  const std::size_t rest = page_with(folders, figures_of(0)).size();
+  return page_with(folders, figures_of(most_bytes - std::min(rest, most_bytes)));
 }
 
 ExitCode write_page(const std::vector<fs::path>& folders, const std::optional<std::string>& out) {
   const fs::path file = out                   ? fs::path(*out)
                         : folders.size() == 1 ? folders[0] / "report.html"
                                               : fs::path("report.html");
-  const std::string page = page_of(folders);
+  const std::string page = page_of(folders, file.has_parent_path() ? file.parent_path() : ".");
   write_text_file(file, page);
   if (page.size() > most_bytes)
     std::fputs(

@@ -44,6 +44,8 @@ std::vector<std::vector<PageFigure>> page_figures(const std::vector<ResultFolder
           figure.file = file;
           if (*type) figure.source = read(folder, file, type);
         }
+      for (const char* film : {"film.mp4", "film.gif"})
+        if (figure.name == "film" && folder.has_file(film)) figure.film = film;
       bytes += figure.source.size();
       figures.back().push_back(std::move(figure));
     }

@@ -12,6 +12,7 @@ namespace delf {
 /// A figure of a folder as the source of an image: a data URL, or nothing where it is too large, and the file for a link.
 struct PageFigure {
   std::string name, source, file;
+  std::string film = {};  ///< of which it is a frame, in the folder: film.mp4
 };
 /// The figures of all folders, in at most so many bytes together: SVG where there is room, else PNG, and the largest of
 /// all are left out.

@@ -65,39 +65,19 @@ ResultFolder::ResultFolder(const fs::path& given) : path(given) {
   keys = recorded_keys(scene);
   for (const std::string& kind : kinds())
     if (const std::string of_scene = text_in(result(kind), "scene"); !of_scene.empty()) name = of_scene;
-  read_series();
-  if (results.empty() && damaged.empty() && scene.empty() && series.empty())
+  series = SeriesTable(path / "series.csv");
+  if (results.empty() && damaged.empty() && scene.empty() && series.columns.empty())
     throw BadScene(
         fmt::format("command line: report {}: holds no results of delf; name a folder that has a scene.ini, "
                     "summary.json or verify.json",
                     path.string()));
   list_files();
   if (scene.empty()) missing.emplace_back("There is no scene.ini: keys, equations and the command are not known.");
-  if (!result("summary") && !damaged.contains("summary") && !series.empty())
+  if (!result("summary") && !damaged.contains("summary") && !series.columns.empty())
     missing.emplace_back("There is no summary.json: the run goes on still, or was killed.");
   if (!result("verify") && !damaged.contains("verify"))
     missing.emplace_back("There is no verify.json: nobody has verified these rows here.");
   if (figures.empty()) missing.emplace_back("There are no figures.");
-}
-
-void ResultFolder::read_series() {
-  std::ifstream in(path / "series.csv");
-  std::string line, cell;
-  if (!std::getline(in, line)) return;
-  for (std::istringstream head(line); std::getline(head, cell, ',');) series_names.push_back(cell);
-  series.resize(series_names.size());
-  while (std::getline(in, line)) {
-    if (in.eof()) break;  // the last line of a run that was killed may be a part of one
-    const char* rest = line.c_str();
-    for (std::vector<double>& column : series) {
-      char* end = nullptr;
-      const double value = std::strtod(rest, &end);
-      column.push_back(end == rest ? NAN : value);
-      rest = *end == ',' ? end + 1 : end;
-    }
-  }
-  // a table without times is of another program
-  if (series.empty() || series.front().empty() || !column("time")) series.clear(), series_names.clear();
 }
 
 void ResultFolder::list_files() {
@@ -117,7 +97,8 @@ void ResultFolder::list_files() {
     if (file.starts_with("figures/")) drawn.insert(fs::path(file).stem().string());
   figures.assign(drawn.begin(), drawn.end());
   // Fields come first, what is derived from them later.
-  static const std::vector<std::string> order{"spacetime", "field", "waveforms", "trajectory", "orbit", "section"};
+  static const std::vector<std::string> order{"spacetime",  "field", "film",  "waveforms", "error",
+                                              "trajectory", "orbit", "phase", "section"};
   std::ranges::stable_sort(figures, {},
                            [](const std::string& f) { return std::ranges::find(order, f) - order.begin(); });
   further_files = names.size() > most ? names.size() - most : 0;
@@ -133,11 +114,6 @@ void ResultFolder::list_files() {
 const Json* ResultFolder::result(const std::string& file) const {
   const auto found = results.find(file);
   return found == results.end() ? nullptr : &found->second;
-}
-
-const std::vector<double>* ResultFolder::column(const std::string& column_name) const {
-  const auto found = std::ranges::find(series_names, column_name);
-  return found == series_names.end() ? nullptr : &series[at(found - series_names.begin())];
 }
 
 bool ResultFolder::has_file(const std::string& file) const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/files/series_table.hpp"
 #include "tools/outcome/findings_json.hpp"
 
 namespace delf {
@@ -30,8 +31,7 @@ struct ResultFolder {
   std::filesystem::path scene_file;     ///< scene.ini, of a sweep that of its first run
   std::string scene;                    ///< its text
   std::map<std::string, std::string> keys;
-  std::vector<std::string> series_names;  ///< columns of series.csv
-  std::vector<std::vector<double>> series;
+  SeriesTable series;  ///< series.csv
   std::vector<File> files;
   std::size_t further_files = 0;  ///< not among these: there are too many
   std::vector<std::string> figures;
@@ -41,12 +41,9 @@ struct ResultFolder {
   const Json* result(const std::string& file) const;
   /// The results in the order in which a page shows them.
   static const std::vector<std::string>& kinds();
-  /// A column of series.csv; null if it is not there.
-  const std::vector<double>* column(const std::string& name) const;
   bool has_file(const std::string& name) const;
 
  private:
-  void read_series();
   void list_files();
 };
 

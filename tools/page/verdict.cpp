@@ -206,11 +206,11 @@ std::vector<PageVerdict> verdicts_of(const ResultFolder& folder) {
     if (folder.result(kind)) verdicts.push_back(all.at(kind)(folder));
     else if (folder.damaged.contains(kind))
       verdicts.push_back({false, fmt::format("{}.json is damaged, and its results are not known.", kind), {}});
-  if (verdicts.empty() && !folder.series.empty())
+  if (verdicts.empty() && !folder.series.columns.empty())
     verdicts.push_back({false,
                         fmt::format("The run has not ended, or was killed: series.csv has {}, to t = {}.",
-                                    counted(static_cast<double>(folder.series.front().size()), "row"),
-                                    number_text(folder.column("time")->back())),
+                                    counted(static_cast<double>(folder.series.columns.front().size()), "row"),
+                                    number_text(folder.series.column("time")->back())),
                         {"If it is not under way: " + way_on(folder)}});
   if (verdicts.empty()) verdicts.push_back({false, "There are no results here yet, but only a scene.", {}});
   return verdicts;

@@ -31,7 +31,8 @@ void refuse_foreign_scene(const fs::path& folder) {
 
 void remove_final_results(const fs::path& folder) {
   std::error_code none;
-  for (const char* name : {"summary.json", "section.csv", "report.html"}) fs::remove(folder / name, none);
+  for (const char* name : {"summary.json", "section.csv", "report.html", "film.mp4", "film.gif"})
+    fs::remove(folder / name, none);
   remove_figures(figure_names(), folder);
 }
 

@@ -20,7 +20,10 @@ std::vector<double> positions_of(const Lattice& lattice) {
 Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, const std::string& resolved_scene,
                    int winding, const RowNames& names, const std::optional<Written>& kept)
     : Recorder(scene, folder, resolved_scene, winding, names, positions_of(scene.problem.lattice), {}, kept) {
-  if (scene.figures) film_.emplace(scene.problem.lattice, names.drawn().size());
+  if (!scene.figures) return;
+  thinned_rows_.emplace(scene.problem.lattice, names.drawn().size());
+  if (scene.problem.lattice.space() == Space::point)
+    momenta_.emplace(scene.problem.lattice, names.of[Role::field].size());
 }
 
 Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, const std::string& resolved_scene,
@@ -38,11 +41,13 @@ Recorder::Recorder(const Scene& scene, const std::filesystem::path& folder, cons
 }
 
 void Recorder::append(const Record& record, const RecordedRow& row, const RecordedDatasets& datasets,
-                      std::span<const double> rates) {
+                      std::span<const double> rates, std::span<const double> momenta) {
   if (seen_) seen_(record, row, datasets), ++seen_records_;
   note(record);
   put(record.time, row, datasets);
-  if (film_) film_->append(record.time, drawn(row), names_.drawn_mesh() ? std::span<const double>() : rates);
+  if (thinned_rows_)
+    thinned_rows_->append(record.time, drawn(row), names_.drawn_mesh() ? std::span<const double>() : rates);
+  if (momenta_ && !momenta.empty()) momenta_->append(record.time, momenta);
 }
 
 void Recorder::note(const Record& record) {
@@ -85,11 +90,13 @@ RunFiles::Written Recorder::flush(bool sync) {
 void Recorder::visit(SavedState& state) {
   energy_errors_.visit(state);
   state("largest energy error", largest_energy_error_);
-  if (film_) film_->visit(state);
+  for (auto* frames : {&thinned_rows_, &momenta_})
+    if (*frames) (*frames)->visit(state);
 }
 
 void Recorder::close() {
-  if (film_) film_->finish();
+  for (auto* frames : {&thinned_rows_, &momenta_})
+    if (*frames) (*frames)->finish();
   try {
     if (fields_) fields_->close();
   } catch (...) {

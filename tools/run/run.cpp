@@ -22,6 +22,7 @@
 #include "tools/report/text_columns.hpp"
 #include "tools/rows/engine.hpp"
 #include "tools/rows/initial_rows.hpp"
+#include "tools/run/drawn_spectrum.hpp"
 #include "tools/run/failures_of_run.hpp"
 #include "tools/run/recorder.hpp"
 #include "tools/run/run_folder.hpp"
@@ -50,17 +51,18 @@ std::string energy_in_words(const Problem& problem) {
 
 // Figures of the rows that the recorder kept.
 std::string drawn(const Scene& scene, const InitialRows& initial, const FieldTheory& fields, const RowNames& names,
-                  const Recorder& recorder, const Outcome& outcome, DrawnSection section, const fs::path& folder) {
-  if (!recorder.film()) return {};
+                  const Recorder& recorder, const Outcome& outcome, DrawnSection section, const DrawnSpectrum* spectrum,
+                  const fs::path& folder) {
+  if (!recorder.thinned_rows()) return {};
   const auto density = scene.problem.parameters.maybe<std::string>("theory.density");
   const std::string theory = density && !density->empty() ? "ℓ = " + shortened(*density, 70) : scene.problem.theory;
   const std::vector<int> angles = angles_of(scene.problem.theory, fields, scene.problem.parameters);
   const bool angle = scene.problem.circle_valued || angles.size() == at(fields.components());
-  return draw_figures(
-      {scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice, initial.winding(),
-       *recorder.film(), recorder.energy_errors(), scene.times, names, energy_in_words(scene.problem),
-       std::move(section), scene.figure_form, initial.exact(), outcome.maxima_over, gain_of(scene.problem.parameters)},
-      folder);
+  return draw_figures({scene.name, theory, scheme_in_words(scene.problem), angle, scene.problem.lattice,
+                       initial.winding(), *recorder.thinned_rows(), recorder.energy_errors(), scene.times, names,
+                       energy_in_words(scene.problem), std::move(section), scene.figure_form, initial.exact(),
+                       outcome.maxima_over, gain_of(scene.problem.parameters), recorder.momenta(), spectrum},
+                      folder);
 }
 
 // The limit of the step, where the first rows tell.
@@ -153,8 +155,15 @@ ExitCode run_in(const fs::path& folder, const Scene& scene, const Resumed& resum
     run.attempt([&] { write_text_file(folder / "section.csv", section.table); });
   }
   return run.end(subject_of(scene.problem), scene, [&] {
+    DrawnSpectrum spectrum;
+    const bool asked = Values(scene.settings).toggle("figures.spectrum");
+    if (asked && scene.problem.lattice.is_circle()) {
+      spectrum = waves_of(scene, begun.simulation);
+      spectrum.first_row = begun.initial.row0(), spectrum.last_row = stepping.last_row();
+      spectrum.last_time = outcome.time;
+    }
     return drawn(scene, begun.initial, begun.simulation.theory(), begun.names, recorder, outcome, std::move(section),
-                 folder);
+                 asked ? &spectrum : nullptr, folder);
   });
 }
 

@@ -25,10 +25,13 @@ constexpr auto momentum_dataset = "momentum";
 
 // Momenta that no method records are half of an equation: at row 0 of the stencils above it, which must hold no more than
 // the starting rows.
+bool has_momenta_of_all_rows(const Simulation& simulation, const RowNames& names) {
+  return std::ranges::find(names.datasets, momentum_dataset, &Simulation::DatasetInfo::name) != names.datasets.end() ||
+         (simulation.starting_rows() >= 2 && simulation.evolution().system().height() <= 1);
+}
+
 void require_momenta_of_all_rows(const Simulation& simulation, const RowNames& names) {
-  if (std::ranges::find(names.datasets, momentum_dataset, &Simulation::DatasetInfo::name) != names.datasets.end())
-    return;
-  if (simulation.starting_rows() < 2 || simulation.evolution().system().height() > 1)
+  if (!has_momenta_of_all_rows(simulation, names))
     throw BadInput(
         "output.section",
         "this method has no momenta at row 0, which a section needs; leave it out, or use a method that starts "
@@ -183,6 +186,20 @@ std::vector<double> Stepping::phase_point(int back) const {
   return point;
 }
 
+/// The momenta of a recorded row, for a phase portrait; not numbers where a row has none, nothing where no row has any.
+std::vector<double> Stepping::drawn_momenta(int back) const {
+  const std::size_t d = simulation_.count(Role::field);
+  if (scene_.problem.lattice.space() != Space::point || !has_momenta_of_all_rows(simulation_, names_)) return {};
+  std::vector<double> p(d, Outcome::unknown);
+  if (!started() || starts_again_) return p;
+  try {
+    const std::vector<double> point = phase_point(back);
+    std::copy_n(point.end() - static_cast<std::ptrdiff_t>(d), d, p.begin());
+  } catch (const BadInput&) {  // equations that are no derivatives of an action
+  }
+  return p;
+}
+
 void Stepping::visit_rows(SavedState& state) {
   simulation_.visit(state);
   warnings_.visit(state);
@@ -294,9 +311,10 @@ void Stepping::record(std::int64_t row) {
   outcome_.energy_final = record.energy;
   outcome_.momentum_final = record.momentum;
   outcome_.charge_final = record.charge;
-  recorder_->append(
-      record, row_, datasets_,
-      has_monitors && recorder_->film() ? rates(static_cast<int>(newest() - row)) : std::vector<double>());
+  const bool drawn = has_monitors && recorder_->thinned_rows();
+  const int back = static_cast<int>(newest() - row);
+  recorder_->append(record, row_, datasets_, drawn ? rates(back) : std::vector<double>(),
+                    recorder_->thinned_rows() ? drawn_momenta(back) : std::vector<double>());
   ++outcome_.records;
 }
 
@@ -415,11 +433,11 @@ void Stepping::finish() {
 }
 
 void Stepping::warn_of_alias() {
-  const Film* film = recorder_->film();
-  if (!film || !film->is_aliased()) return;
+  const ThinnedRows* thinned = recorder_->thinned_rows();
+  if (!thinned || !thinned->is_aliased()) return;
   // The excess of pulses is in proportion to the time between frames.
-  const double apart = static_cast<double>(scene_.every * film->stride()),
-               wanted = apart * Film::aliased / film->alias();
+  const double apart = static_cast<double>(scene_.every * thinned->stride()),
+               wanted = apart * ThinnedRows::aliased / thinned->alias();
   const auto every = std::max<std::int64_t>(1, std::llround(std::floor(wanted)));
   constexpr std::int64_t most_frames = 600;
   const bool fits = every < scene_.every && outcome_.steps / every <= most_frames;

@@ -54,6 +54,7 @@ class Stepping final : public RowLoop {
   std::vector<double> rates(int back) const;
   void warn_of_alias();
   std::vector<double> phase_point(int back) const;
+  std::vector<double> drawn_momenta(int back) const;
   void put(const Simulation::Monitors&, Record&) const;
   Simulation::Monitors monitors() const;
 

@@ -86,6 +86,12 @@ std::vector<Parameter> command_keys() {
        .help = "of the key: how long the last interval may be",
        .range = {.low = 0, .open = true}},
 
+      {.key = "film.seconds",
+       .fallback = 10.0,
+       .help = "how long the film is; it has 25 frames a second, or each recorded row where there are fewer",
+       .unit = "seconds",
+       .range = {.low = 0, .high = 600, .open = true}},
+
       {.key = "convergence.levels",
        .fallback = 4,
        .help = "lines of the table, each with half of the steps of the one before",

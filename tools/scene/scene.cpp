@@ -412,7 +412,7 @@ std::string why_without_effect(const Scene& scene, std::string_view key) {
   if (key.starts_with("stencil.") && scene.problem.stencil != stencil_as_text)
     return fmt::format("lattice.stencil = {} is in force", scene.problem.stencil);
   if ((key == "output.format" || key == "output.titles") && !scene.figures) return "output.figures = off is in force";
-  if (key == "output.xdmf" && !scene.fields) return "output.fields = off is in force";
+  if ((key == "output.xdmf" || key == "output.film") && !scene.fields) return "output.fields = off is in force";
   const bool of_steps = key == "lattice.time_steps" || key == "lattice.step_control";
   if (of_steps && scene.problem.step_control) return {};  // of moving sites
   return why_unread(kind_of(scene.problem.lattice), key);

@@ -238,6 +238,11 @@ std::vector<Parameter> scene_keys() {
        .fallback = "off",
        .help = "make a page of the results, report.html, as `delf report` does",
        .choices = on_or_off},
+      {.key = "output.film",
+       .fallback = "off",
+       .help = "make a film of the recorded rows, film.mp4 or film.gif, as `delf film` does; a run that is not over is "
+               "not filmed",
+       .choices = on_or_off},
       {.key = "output.estimate",
        .fallback = "off",
        .help = "estimate the errors of the last row and of the measures by two more runs, "
@@ -259,6 +264,11 @@ std::vector<Parameter> scene_keys() {
        .help = "a Poincare section: q1 = 0, p1 > 0; its points are in "
                "section.csv. Angles of the theory count modulo 2 pi",
        .otherwise = "none"},
+      {.key = "figures.spectrum",
+       .fallback = "off",
+       .help = "draw |phi_k| over the wave number k, in the beginning and in the end, and the frequencies of the "
+               "lattice's waves",
+       .choices = on_or_off},
   };
 }
 

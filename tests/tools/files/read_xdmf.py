@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""read_xdmf.py DELF FOLDER, by pvbatch: runs six scenes in FOLDER, opens their fields.xdmf in ParaView, and compares ten
+"""read_xdmf.py DELF FOLDER, by pvbatch: runs six scenes in FOLDER, and kills a seventh run, opens their fields.xdmf in ParaView, and compares ten
 values of each with those of fields.h5, which h5py reads."""
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import h5py
 from paraview import simple
@@ -26,11 +28,28 @@ def blocks(data):
     return [leaf for n in range(data.GetNumberOfBlocks()) for leaf in blocks(data.GetBlock(n)) if leaf is not None]
 
 
-for scene in ("collision", "coupled-sine-gordon", "gauss-kink", "kdv", "r-adaptive", "sphere"):
+def kill_a_run(out):
+    """Leaves what a run of a day has written when it is killed, and what `delf xdmf` makes of it."""
+    checkpoint = os.path.join(out, "checkpoint")
+    if os.path.exists(checkpoint):
+        os.remove(checkpoint)
+    run = subprocess.Popen([program, "run", "collision", "--run.until=1e6", "--output.every=20", "--output.checkpoint=0.1",
+                            "--output.figures=off", "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    while not os.path.exists(checkpoint) and run.poll() is None:
+        time.sleep(0.05)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    subprocess.run([program, "xdmf", out], check=True, stdout=subprocess.DEVNULL)
+
+
+for scene in ("collision", "coupled-sine-gordon", "gauss-kink", "kdv", "r-adaptive", "sphere", "killed"):
     out = os.path.join(folder, scene)
     length = "--run.steps=40" if scene in ("r-adaptive", "kdv", "gauss-kink") else "--run.until=4"
-    subprocess.run([program, "run", scene, length, "--output.every=2", "--output.figures=off", "--output.xdmf=on", "--out", out],
-                   check=True, stdout=subprocess.DEVNULL)
+    if scene == "killed":
+        kill_a_run(out)
+    else:
+        subprocess.run([program, "run", scene, length, "--output.every=2", "--output.figures=off", "--output.xdmf=on", "--out", out],
+                       check=True, stdout=subprocess.DEVNULL)
     with h5py.File(os.path.join(out, "fields.h5")) as file:
         field, times = file["field"][:], file["time"][:]
         names = file["field"].attrs.get("components", b"phi")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/figures/film.hpp"
+#include "tools/figures/thinned_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace delf {
 
 namespace {
 
-constexpr std::size_t most = 600;
+constexpr std::size_t most_frames = 600;
 
 void drop_every_second(std::vector<double>& all, std::size_t width) {
   const std::size_t kept = all.size() / width / 2;
@@ -24,9 +24,9 @@ void drop_every_second(std::vector<double>& all, std::size_t width) {
 
 }  // namespace
 
-Film::Film(const Lattice& lattice, std::size_t components)
-    : capacity_(lattice.sites() == 1 ? 10 * most : most),
-      site_stride_(std::max<std::size_t>(1, (delf::at(lattice.sites()) + most - 1) / most)),
+ThinnedRows::ThinnedRows(const Lattice& lattice, std::size_t components)
+    : capacity_(lattice.sites() == 1 ? 10 * most_frames : most_frames),
+      site_stride_(std::max<std::size_t>(1, (delf::at(lattice.sites()) + most_frames - 1) / most_frames)),
       components_(components) {
   for (std::size_t i = 0; i < delf::at(lattice.sites()); i += site_stride_)
     space_.push_back(lattice.position(static_cast<int>(i)));
@@ -34,7 +34,7 @@ Film::Film(const Lattice& lattice, std::size_t components)
   newest_rates_.resize(newest_.size());
 }
 
-void Film::append(double time, std::span<const double> row, std::span<const double> rates) {
+void ThinnedRows::append(double time, std::span<const double> row, std::span<const double> rates) {
   for (std::size_t n = 0; n < newest_.size(); ++n) {
     const std::size_t at = n / components_ * site_stride_ * components_ + n % components_;
     newest_[n] = row[at];
@@ -45,43 +45,43 @@ void Film::append(double time, std::span<const double> row, std::span<const doub
   if (seen_++ % stride_ == 0) keep();
 }
 
-void Film::keep() {
+void ThinnedRows::keep() {
   if (times_.size() >= capacity_) halve();
   put();
 }
 
-void Film::put() {
+void ThinnedRows::put() {
   times_.push_back(newest_time_);
   values_.insert(values_.end(), newest_.begin(), newest_.end());
   rates_.insert(rates_.end(), newest_rates_.begin(), newest_rates_.end());
   newest_kept_ = true;
 }
 
-// The capacity is even: the row that finds the film full is the next of those that are kept.
-void Film::halve() {
+// The capacity is even: the row that finds it full is the next of those that are kept.
+void ThinnedRows::halve() {
   drop_every_second(times_, 1);
   for (std::vector<double>* all : {&values_, &rates_}) drop_every_second(*all, newest_.size());
   stride_ *= 2;
 }
 
-void Film::visit(SavedState& state) {
-  state("film stride", stride_), state("rows seen", seen_), state("newest is kept", newest_kept_);
+void ThinnedRows::visit(SavedState& state) {
+  state("stride of thinned rows", stride_), state("rows seen", seen_), state("newest is kept", newest_kept_);
   state("newest time", newest_time_), state("newest", newest_), state("newest rates", newest_rates_);
   state("times", times_), state("frames", values_), state("rates", rates_);
 }
 
-void Film::finish() {
+void ThinnedRows::finish() {
   if (!newest_kept_) put();
 }
 
 // The last record may come early, after less than a full interval.
-int Film::even_frames() const {
+int ThinnedRows::even_frames() const {
   std::size_t n = times_.size();
   while (n > 2 && !(times_[n - 1] - times_[n - 2] > 0.999 * (times_[1] - times_[0]))) --n;
   return static_cast<int>(n);
 }
 
-double Film::alias() const {
+double ThinnedRows::alias() const {
   constexpr double little = 1e-4;         // a hundredth of what the field varies by is not seen
   const bool is_map = space_.size() > 1;  // of the first component; of a point all coordinates are drawn
   const std::size_t step = is_map ? components_ : 1, width = newest_.size();
@@ -102,7 +102,7 @@ double Film::alias() const {
   return missed <= little * size ? 0 : missed / changed;
 }
 
-std::span<const double> Film::frame(int index) const {
+std::span<const double> ThinnedRows::frame(int index) const {
   return std::span(values_).subspan(delf::at(index) * newest_.size(), newest_.size());
 }
 

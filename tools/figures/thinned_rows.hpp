@@ -12,10 +12,10 @@ class SavedState;
 
 /// The recorded rows, thinned to what a figure can show: at most 600 frames of at most 600 sites, or 6000 of one site, always
 /// with the first row and the last one. When it is full every second frame is dropped, whatever the length of the run: a run
-/// in parts has the film of the whole. Independent of fields.h5.
-class Film {
+/// in parts has those of the whole. Independent of fields.h5.
+class ThinnedRows {
  public:
-  explicit Film(const Lattice&, std::size_t components = 1);
+  explicit ThinnedRows(const Lattice&, std::size_t components = 1);
 
   /// A row, with its rates of change where they are known: see alias().
   void append(double time, std::span<const double> row, std::span<const double> rates = {});
