@@ -30,10 +30,10 @@ constexpr std::array meshed{-1. / 24, 7. / 5760, -31. / 967680};
 constexpr double nothing = 1e-13;  ///< of sums of weights
 
 [[noreturn]] void refuse_density(const std::string& reason) {
-  throw BadInput("theory.density", "--modified: " + reason);
+  throw BadInput("theory.density", "no modified Lagrangian: " + reason);
 }
 [[noreturn]] void refuse_table(const std::string& reason) {
-  throw BadInput("lattice.stencil", "--modified: " + reason);
+  throw BadInput("lattice.stencil", "no modified Lagrangian: " + reason);
 }
 
 double factorial(int n) { return std::tgamma(n + 1.0); }
@@ -497,7 +497,7 @@ struct ModifiedLagrangian::Impl {
             if (of_rate(p) || o + s > 4)
               refuse_table("at order " + std::to_string(o + s) +
                            " the nodes of this stencil have no Lagrangian of first order in time that is found here; " +
-                           (o + s > 2 ? "ask for --modified=2" : "use a stencil of sites"));
+                           (o + s > 2 ? "ask for order 2" : "use a stencil of sites"));
             algebra.add(sum, in_time(algebra.times(p, part)));
           }
         }

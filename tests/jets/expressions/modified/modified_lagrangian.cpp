@@ -144,12 +144,13 @@ TEST_CASE("the modified Lagrangian of leapfrog in the plane is that of force and
 }
 
 TEST_CASE("what has no modified Lagrangian of first order in time is refused in one line") {
-  CHECK(says(refusal(table("nine-tuple"), wave, 2), "lattice.stencil: --modified: the stencil reads 3 rows"));
+  CHECK(
+      says(refusal(table("nine-tuple"), wave, 2), "lattice.stencil: no modified Lagrangian: the stencil reads 3 rows"));
   CHECK(says(refusal(spacetime_element(2, 2, TimeQuadrature::lobatto), wave, 2),
              "nodes inside a cell in time and in space both"));
-  CHECK(says(refusal(table("hexagon"), sine_gordon, 6), "ask for --modified"));
+  CHECK(says(refusal(table("hexagon"), sine_gordon, 6), "ask for order 2"));
   const ExpressionNames two{.fields = {"u", "v"}};
   CHECK(says(refusal(table("rectangle"), "0.5*(u*v_t - v*u_t) - 0.5*(u_x^2 + v_x^2)", 2, two),
-             "theory.density: --modified: the density is not of second order in the time derivatives"));
+             "theory.density: no modified Lagrangian: the density is not of second order in the time derivatives"));
   CHECK(says(refusal(table("six-tuple"), "0.5*phi_t^2 - 0.5*phi_x^2 + 0.1*phi_tx^2", 2), "phi_tx"));
 }
