@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <cerrno>
 #include <csignal>
@@ -24,6 +25,7 @@ namespace po = boost::program_options;
 po::parsed_options parsed(const std::vector<std::string>& words) {
   po::options_description known;
   known.add_options()("help", "")("version", "")("latex", "")("overwrite", "")("out", po::value<std::string>());
+  known.add_options()("modified", po::value<std::string>());
   known.add_options()("fields", po::value<std::string>())("nearby", po::value<std::string>());
   known.add_options()("dataset", po::value<std::string>());
   for (const Parameter& key : keys()) known.add_options()(key.key.c_str(), po::value<std::string>());
@@ -47,6 +49,13 @@ Arguments taken_apart(const std::vector<std::string>& words) {
       arguments.version = true;
     } else if (option.string_key == "latex" && !option.unregistered) {
       arguments.latex = true;
+    } else if (option.string_key == "modified") {
+      if (value != "2" && value != "4" && value != "6")
+        throw BadScene(
+            fmt::format("command line: --modified={}: is the order in h and k of its last terms, 2, 4 or 6; "
+                        "choose one, or leave it out for 4",
+                        value));
+      arguments.modified = value[0] - '0';
     } else if (option.string_key == "overwrite" && !option.unregistered) {
       arguments.overwrite = true;
     } else if (option.string_key == "out") {
@@ -90,7 +99,8 @@ void check_files_of_rows(const Command& command, const Arguments& arguments) {
     throw BadScene("command line: --nearby: near to which rows? Give them too, as --fields FILE");
 }
 
-ExitCode carry_out(const std::vector<std::string>& words) {
+ExitCode carry_out(std::vector<std::string> words) {
+  std::ranges::replace(words, "--modified", "--modified=4");  // it takes no word after it
   Arguments arguments = taken_apart(words);
   if (arguments.version) {
     fmt::print("delf {}\n", DELF_VERSION);
@@ -106,6 +116,9 @@ ExitCode carry_out(const std::vector<std::string>& words) {
   check_files_of_rows(command, arguments);
   if (arguments.latex && !command.writes_latex)
     throw BadScene(fmt::format("command line: --latex: `{}` prints no formulas; `delf plan` does", command.name));
+  if (arguments.modified && !command.writes_latex)
+    throw BadScene(
+        fmt::format("command line: --modified: `{}` prints no modified Lagrangian; `delf plan` does", command.name));
   if (arguments.overwrite && !command.keeps_earlier)
     throw BadScene(
         fmt::format("command line: --overwrite: `{}` keeps nothing of an earlier run; `delf run` does", command.name));

@@ -245,10 +245,16 @@ ExitCode carry_out_report(const Arguments& arguments) {
   return write_page({arguments.words.begin() + 1, arguments.words.end()}, arguments.out);
 }
 
+ExitCode plan_modified(const ComplexScene&, int, bool) {
+  throw BadScene("command line: --modified: is for lattices, and this scene is on a mesh; leave it out");
+}
+
 ExitCode carry_out_plan(const Arguments& arguments) {
   refuse(arguments, false);
-  return with_scene(settings_of(arguments), arguments,
-                    [&](const auto& scene, const std::string&) { return plan(scene, arguments.latex); });
+  return with_scene(settings_of(arguments), arguments, [&](const auto& scene, const std::string&) {
+    return arguments.modified ? plan_modified(scene, *arguments.modified, arguments.latex)
+                              : plan(scene, arguments.latex);
+  });
 }
 
 ExitCode carry_out_verify(const Arguments& arguments) {
@@ -365,12 +371,16 @@ const std::vector<Command>& table() {
        false,
        "film"},
       {"plan",
-       "delf plan SCENE [--latex] [--KEY=VALUE ...]",
+       "delf plan SCENE [--latex] [--modified[=ORDER]] [--KEY=VALUE ...]",
        "what a run would solve, how, and at what cost",
        "Prints what would be solved and how, what it costs, what would be written and what is left out. For a theory "
        "that\n"
        "is given as text these are formulas: its density, its field equations, and those of the stencil.\n\n"
-       "  --latex   these formulas in LaTeX, and nothing else\n\nThe keys are those of `delf run`:",
+       "  --latex          these formulas in LaTeX, and nothing else\n"
+       "  --modified[=4]   the modified Lagrangian instead, up to order 2, 4 or 6; with --latex too\n\n"
+       "Rows of a variational scheme are rows of a smooth solution of the modified Lagrangian\n"
+       "l + h^2 l_20 + h k l_11 + k^2 l_02 + ..., up to what is beyond its order. It is of first order in\n"
+       "t, with derivatives in x; divergences are left out (M. Vermeeren, Numer. Math. 137 (2017) 1001).\n\nThe keys are those of `delf run`:",
        true,
        carry_out_plan,
        {},

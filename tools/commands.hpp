@@ -18,8 +18,9 @@ struct Arguments {
   std::optional<std::string> fields;  ///< --fields: recorded rows to verify
   std::vector<std::string> nearby;    ///< --nearby, as often as given: solutions near those rows
   bool help = false, version = false;
-  bool latex = false;      ///< --latex: the equations of a plan for a paper
-  bool overwrite = false;  ///< --overwrite: keep nothing of an earlier run of the scene
+  std::optional<int> modified;  ///< --modified: the order of a modified Lagrangian
+  bool latex = false;           ///< --latex: the equations of a plan for a paper
+  bool overwrite = false;       ///< --overwrite: keep nothing of an earlier run of the scene
 };
 
 struct Command {
@@ -28,7 +29,7 @@ struct Command {
   ExitCode (*carry_out)(const Arguments&);
   std::string_view section = {};  ///< of the keys that its help lists; all if empty
   bool reads_rows = false;        ///< takes --fields and --nearby; they are refused before any other is carried out
-  bool writes_latex = false;      ///< takes --latex
+  bool writes_latex = false;      ///< takes --latex and --modified
   bool keeps_earlier = false;     ///< takes --overwrite
   std::string_view also = {};     ///< a section of another command that it reads too
 };

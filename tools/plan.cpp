@@ -10,6 +10,7 @@
 #include "tools/outcome/outcome.hpp"
 #include "tools/report/equations.hpp"
 #include "tools/report/in_words.hpp"
+#include "tools/report/modified.hpp"
 #include "tools/report/seconds_since.hpp"
 #include "tools/rows/engine.hpp"
 #include "tools/rows/initial_rows.hpp"
@@ -128,6 +129,26 @@ ExitCode plan(const Scene& scene, bool latex) {
     if (const std::string waves = waves_in_words(scene, simulation); !waves.empty())
       fmt::print("waves        {}\n", broken_lines(waves));
     fmt::print("cost         {}\n", cost(scene, initial, simulation));
+    return ExitCode::done;
+  });
+}
+
+ExitCode plan_modified(const Scene& scene, int order, bool latex) {
+  return with_memory_for(scene, [&] {
+    const InitialRows initial(scene);
+    const Simulation simulation = build(scene, initial.winding());
+    try {
+      ModifiedLagrangian modified = modified_lagrangian(scene.problem, simulation, order);
+      const SymbolicDensity& density = *text_of(scene.problem, simulation);
+      if (latex) {
+        fmt::print("{}", modified_in_latex(modified, density));
+        return ExitCode::done;
+      }
+      fmt::print("{}: {}, {}{}\n{}", scene.name, scene.problem.theory, scheme_in_words(scene.problem),
+                 simulation.is_processed() ? ", the rows of its kernel" : "", modified_in_words(modified, density));
+    } catch (const BadInput& bad) {
+      throw scene.settings.located(bad);
+    }
     return ExitCode::done;
   });
 }

@@ -12,5 +12,7 @@ struct ComplexScene;
 ExitCode plan(const Scene&, bool latex);
 /// The plan of a scene on a mesh, which has no equations for a paper.
 ExitCode plan(const ComplexScene&, bool latex);
+/// `delf plan --modified`: the modified Lagrangian up to an order in h and k, in place of all that.
+ExitCode plan_modified(const Scene&, int order, bool latex);
 
 }  // namespace delf

@@ -56,7 +56,7 @@ _delf() {
         # of the command and of every run
         local options=--out
         [[ $command == verify ]] && options+=' --fields --dataset --nearby'
-        [[ $command == plan ]] && options='--latex'
+        [[ $command == plan ]] && options='--latex --modified'
         [[ $command == run ]] && options+=' --overwrite'
         mapfile -t COMPREPLY < <(compgen -W "$options $({ "$program" help run; "$program" help "$command"; } 2>/dev/null |
           sed -n 's/^  \([a-z]*\.[a-z_]*\) .*/--\1=/p' | sort -u)" -- "$word")

@@ -31,49 +31,6 @@ const StencilTable* table_of(const Problem& p, const Simulation& simulation) {
   return jets ? &jets->table : nullptr;
 }
 
-/// The density as text: that of the scene, or the text of a built-in theory; null if there is none.
-std::shared_ptr<const SymbolicDensity> text_of(const Problem& p, const Simulation& simulation) {
-  const std::shared_ptr<const BatchDensity>& density = simulation.theory().shared_density();
-  if (const SymbolicDensity* own = density->formula()) return {density, own};
-  return text_of(p.theory, p.parameters);
-}
-
-/// A sum broken between its terms into lines of at most `width` letters, where terms are that short.
-std::vector<std::string> lines_of_terms(const std::string& sum, std::size_t width) {
-  std::vector<std::string> lines{""};
-  std::size_t begin = 0;
-  int depth = 0;
-  const auto put = [&](std::size_t end) {
-    if (!lines.back().empty() && lines.back().size() + end - begin > width) lines.emplace_back();
-    lines.back().append(sum, begin, end - begin);
-    begin = end;
-  };
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    if (sum[i] == '(' || sum[i] == '{') ++depth;
-    if (sum[i] == ')' || sum[i] == '}') --depth;
-    const bool between =
-        sum[i] == ' ' && i + 2 < sum.size() && sum[i + 2] == ' ' && (sum[i + 1] == '+' || sum[i + 1] == '-');
-    if (depth == 0 && between) put(i);
-  }
-  put(sum.size());
-  return lines;
-}
-
-/// A sum of terms as text for a terminal, in lines of its width.
-std::string broken(const std::string& sum, std::size_t indent) {
-  constexpr std::size_t width = 110;
-  return fmt::format("{}", fmt::join(lines_of_terms(sum, width - indent), "\n" + std::string(indent, ' ')));
-}
-
-/// An equation of its own in LaTeX, in lines that fit on a page.
-std::string displayed(const std::string& formula) {
-  constexpr std::size_t width = 220;  // of the source: indices and fractions take little room on paper
-  const std::vector<std::string> lines = lines_of_terms(formula, width);
-  if (lines.size() == 1) return fmt::format("\\[\n  {}\n\\]\n", formula);
-  return fmt::format("\\[\n  \\begin{{aligned}}\n  &{}\n  \\end{{aligned}}\n\\]\n",
-                     fmt::join(lines, " \\\\\n  &\\quad"));
-}
-
 /// The letters of MathML that are seen: those outside of tags.
 std::size_t seen_letters(std::string_view mathml) {
   std::size_t letters = 0;
@@ -103,6 +60,45 @@ std::string displayed_in_mathml(const std::string& formula) {
 }
 
 }  // namespace
+
+std::shared_ptr<const SymbolicDensity> text_of(const Problem& p, const Simulation& simulation) {
+  const std::shared_ptr<const BatchDensity>& density = simulation.theory().shared_density();
+  if (const SymbolicDensity* own = density->formula()) return {density, own};
+  return text_of(p.theory, p.parameters);
+}
+
+std::vector<std::string> lines_of_terms(const std::string& sum, std::size_t width) {
+  std::vector<std::string> lines{""};
+  std::size_t begin = 0;
+  int depth = 0;
+  const auto put = [&](std::size_t end) {
+    if (!lines.back().empty() && lines.back().size() + end - begin > width) lines.emplace_back();
+    lines.back().append(sum, begin, end - begin);
+    begin = end;
+  };
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    if (sum[i] == '(' || sum[i] == '{') ++depth;
+    if (sum[i] == ')' || sum[i] == '}') --depth;
+    const bool between =
+        sum[i] == ' ' && i + 2 < sum.size() && sum[i + 2] == ' ' && (sum[i + 1] == '+' || sum[i + 1] == '-');
+    if (depth == 0 && between) put(i);
+  }
+  put(sum.size());
+  return lines;
+}
+
+std::string broken(const std::string& sum, std::size_t indent) {
+  constexpr std::size_t width = 110;
+  return fmt::format("{}", fmt::join(lines_of_terms(sum, width - indent), "\n" + std::string(indent, ' ')));
+}
+
+std::string displayed(const std::string& formula) {
+  constexpr std::size_t width = 220;  // of the source: indices and fractions take little room on paper
+  const std::vector<std::string> lines = lines_of_terms(formula, width);
+  if (lines.size() == 1) return fmt::format("\\[\n  {}\n\\]\n", formula);
+  return fmt::format("\\[\n  \\begin{{aligned}}\n  &{}\n  \\end{{aligned}}\n\\]\n",
+                     fmt::join(lines, " \\\\\n  &\\quad"));
+}
 
 std::string equations_in_words(const Problem& p, const Simulation& simulation) {
   constexpr std::size_t indent = 13;

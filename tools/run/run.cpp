@@ -19,6 +19,7 @@
 #include "tools/files/state_in_memory.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/outcome/outcome.hpp"
+#include "tools/report/modified.hpp"
 #include "tools/report/text_columns.hpp"
 #include "tools/rows/engine.hpp"
 #include "tools/rows/initial_rows.hpp"
@@ -88,6 +89,7 @@ struct Begun {
   Simulation simulation;
   bool estimated = false;
   RowNames names;
+  std::optional<ModifiedEnergy> modified;
   std::optional<OwnEnergy> own;
   std::optional<Stepping> stepping;  ///< always there
 
@@ -106,10 +108,20 @@ struct Begun {
     problem.winding = outcome.winding;
     outcome.energy_of = energy_of_run(problem).name;
     const bool driven = !key_of_driven_end(problem).empty();
+    const auto order = Values(scene.settings).integer("output.modified");
+    if (order != 0 && scene.problem.lattice.space() != Space::interval) {
+      if (order % 2 != 0) throw scene.settings.error("output.modified", "is an even order, 2, 4 or 6; 0 for none");
+      try {
+        modified.emplace(modified_energy(problem, simulation, static_cast<int>(order), initial.monodromy()));
+      } catch (const BadInput& bad) {
+        throw scene.settings.located(bad);
+      }
+      for (const std::string& name : names_of_modified(scene)) names.further.push_back(name);
+    }
     if (!driven) own = own_energy(simulation, problem);
     if (own) names.further.emplace_back("energy_own");
     if (driven) names.further.emplace_back(energy_less_work);
-    stepping.emplace(scene, initial, simulation, names, own, outcome);
+    stepping.emplace(scene, initial, simulation, names, modified, own, outcome);
   }
   Begun(const Begun&) = delete;
   Begun& operator=(const Begun&) = delete;

@@ -111,14 +111,21 @@ std::string threads_in_words(const Simulation& simulation, int asked) {
   return fmt::format("{} of {}: each takes {} sites or more", used, asked, each);
 }
 
+std::vector<std::string> names_of_modified(const Scene& scene) {
+  std::vector<std::string> names{"energy_modified"};
+  if (scene.problem.lattice.space() != Space::point) names.emplace_back("momentum_modified");
+  return names;
+}
+
 Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& simulation, const RowNames& names,
-                   const std::optional<OwnEnergy>& own, Outcome& outcome)
+                   const std::optional<ModifiedEnergy>& modified, const std::optional<OwnEnergy>& own, Outcome& outcome)
     : RowLoop(scene, outcome, simulation, watched_rows(scene, simulation)),
       scene_(scene),
       initial_(initial),
       simulation_(simulation),
       outcome_(outcome),
       names_(names),
+      modified_(modified),
       own_energy_(own),
       warnings_(scene, initial, simulation),
       measures_(scene, initial.winding(), simulation) {
@@ -138,6 +145,9 @@ Stepping::Stepping(const Scene& scene, const InitialRows& initial, Simulation& s
   if (scene.fields) datasets_.resize(names.datasets.size());
   for (const std::string& name : simulation.conserved_names())
     outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
+  if (modified)
+    for (const std::string& name : names_of_modified(scene))
+      outcome.conserved.push_back({name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
   if (own)
     outcome.conserved.push_back(
         {names.further.back() + ", " + own->entry->name, Outcome::unknown, Outcome::unknown, Outcome::unknown});
@@ -398,6 +408,15 @@ std::vector<double> Stepping::rates(int back) const {
 
 Simulation::Monitors Stepping::monitors() const {
   Simulation::Monitors all = simulation_.monitors();
+  if (modified_) {
+    std::vector<double> earlier(row_[Role::field].size()), later(earlier);
+    simulation_.copy_row(1, earlier), simulation_.copy_row(0, later);
+    const auto [energy, momentum] = modified_->of(earlier, later, simulation_.time(newest() - 1));
+    for (const double value : {energy, momentum}) all.conserved.push_back(value);
+    if (scene_.problem.lattice.space() == Space::point) all.conserved.pop_back();
+    // a momentum may be zero: its error is one beside the energy
+    while (all.conserved_scale.size() < all.conserved.size()) all.conserved_scale.push_back(std::abs(energy));
+  }
   if (own_energy_) {
     all.conserved.push_back(newest_own_energy(*own_energy_, simulation_));
     all.conserved_scale.push_back(std::abs(all.conserved.back()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include "schemes/methods/energies.hpp"
+#include "schemes/modified_energy.hpp"
 #include "schemes/system/end_work.hpp"
 #include "tools/measure/measures.hpp"
 #include "tools/rows/initial_rows.hpp"
@@ -18,12 +19,16 @@ std::string threads_in_words(const Simulation&, int asked);
 /// conserved sums, where there are such ends.
 inline constexpr auto energy_less_work = "energy_less_work";
 
+/// The columns of output.modified; a point has no momentum.
+std::vector<std::string> names_of_modified(const Scene&);
+
 /// The rows of a simulation, as its scene wants them.
 class Stepping final : public RowLoop {
  public:
-  /// `own`: the energy of the scheme's own rows, if it has one: the last of names.further and of the conserved sums.
-  Stepping(const Scene&, const InitialRows&, Simulation&, const RowNames&, const std::optional<OwnEnergy>& own,
-           Outcome&);
+  /// `modified`: the energy, and in space the momentum, of output.modified; `own`: the energy of the scheme's own rows, if it
+  /// has one. They are the last of names.further and of the conserved sums, in this order.
+  Stepping(const Scene&, const InitialRows&, Simulation&, const RowNames&,
+           const std::optional<ModifiedEnergy>& modified, const std::optional<OwnEnergy>& own, Outcome&);
 
   void run(Recorder&, Checkpoints&);
   /// The points of output.section; null without it.
@@ -64,6 +69,7 @@ class Stepping final : public RowLoop {
   Outcome& outcome_;
   Recorder* recorder_ = nullptr;
   const RowNames& names_;
+  const std::optional<ModifiedEnergy>& modified_;
   const std::optional<OwnEnergy>& own_energy_;
   Warnings warnings_;
   Measures measures_;

@@ -32,6 +32,7 @@ const std::vector<KeysOfSpaces>& keys_of_spaces() {
       {{circle}, {"figures.spectrum"}, "only a circle has waves of all its wave numbers"},
       {{interval}, {"boundary.left", "boundary.right", "boundary.left.flux", "boundary.right.flux"}, "{} has no walls"},
       {{circle, interval, mesh, still, spacetime}, {"output.xdmf"}, "{} has no space to show"},
+      {{circle, point}, {"output.modified"}, "{} has walls, where sums over sites are no integrals"},
       {{point}, {"output.section"}, "sections are of mechanics, lattice.space = point"},
       {{mesh, still, spacetime}, {"lattice.mesh", "lattice.merge"}, of_meshes},
       {{mesh, still}, {"lattice.time", "boundary.mesh"}, of_meshes},

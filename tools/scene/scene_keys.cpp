@@ -248,6 +248,12 @@ std::vector<Parameter> scene_keys() {
        .help = "estimate the errors of the last row and of the measures by two more runs, "
                "at half and at a quarter of h and k; they cost twenty times the run",
        .choices = on_or_off},
+      {.key = "output.modified",
+       .fallback = 0,
+       .help =
+           "record the energy and momentum of the modified Lagrangian (`delf plan --modified`) of this order, 2, 4 or "
+           "6; 0: neither",
+       .range = {.low = 0, .high = 6}},
       {.key = "output.times",
        .fallback = "",
        .help = "times of the waveforms figure: 0, 10, 20",
