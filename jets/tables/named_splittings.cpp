@@ -43,10 +43,13 @@ Splitting blanes_moan_6a() {
 
 const std::vector<NamedSplitting>& named_splittings() {
   static const std::vector<NamedSplitting> list{
-      {"leapfrog", 2, 1, [] { return splitting_of_order(2); }},       {"mclachlan-4", 4, 4, mclachlan_4},
-      {"blanes-moan-4", 4, 6, [] { return splitting_of_order(4); }},  {"okunbor-skeel-6", 6, 7, okunbor_skeel_6},
-      {"blanes-moan-6", 6, 11, [] { return splitting_of_order(6); }}, {"blanes-moan-6a", 6, 14, blanes_moan_6a},
-      {"kahan-li-8", 8, 17, [] { return splitting_of_order(8); }}};
+      {"leapfrog", 2, 1, [] { return splitting_of_order(2); }, {"verlet-1967", "hairer-lubich-wanner-2003"}},
+      {"mclachlan-4", 4, 4, mclachlan_4, {"mclachlan-1995"}},
+      {"blanes-moan-4", 4, 6, [] { return splitting_of_order(4); }, {"blanes-moan-2002"}},
+      {"okunbor-skeel-6", 6, 7, okunbor_skeel_6, {"okunbor-skeel-1994", "mclachlan-1995"}},
+      {"blanes-moan-6", 6, 11, [] { return splitting_of_order(6); }, {"blanes-moan-2002"}},
+      {"blanes-moan-6a", 6, 14, blanes_moan_6a, {"blanes-moan-2002"}},
+      {"kahan-li-8", 8, 17, [] { return splitting_of_order(8); }, {"kahan-li-1997"}}};
   return list;
 }
 

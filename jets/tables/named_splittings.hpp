@@ -13,6 +13,7 @@ struct NamedSplitting {
   std::string name;
   int order, kicks;
   Splitting (*make)();
+  std::vector<std::string> sources = {};  ///< keys of tools/cite/references.bib
 };
 /// leapfrog; mclachlan-4, blanes-moan-4; okunbor-skeel-6, blanes-moan-6, blanes-moan-6a; kahan-li-8.
 const std::vector<NamedSplitting>& named_splittings();

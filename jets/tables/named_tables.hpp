@@ -12,6 +12,8 @@ struct NamedTable {
   std::string name, description;
   StencilTable table;
   std::vector<std::string> aliases = {};  ///< other names of its equations, on the lattices that it is for
+  std::string words = {};                 ///< in a paper: "the symmetric rectangle"
+  std::vector<std::string> sources = {};  ///< keys of tools/cite/references.bib
 
   /// It has no sites side by side: for lattice.space = point.
   bool is_for_point() const;

@@ -13,6 +13,8 @@ struct TimeTableau {
   int functions;
   std::string quadrature;
   int points;
+  std::string words = {};                 ///< in a paper: "the midpoint rule"
+  std::vector<std::string> sources = {};  ///< keys of tools/cite/references.bib
 };
 
 /// midpoint, stormer-verlet; gauss1 … gauss6; lobatto2 … lobatto6.

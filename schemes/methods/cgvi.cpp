@@ -154,7 +154,9 @@ std::vector<NamedScheme> cgvi_variants(const Problem& base) {
   return schemes;
 }
 
-std::string cgvi_label(const Problem& p) { return "cgvi, " + TimeElementKeys(p.parameters).in_words() + space_label(p); }
+std::string cgvi_label(const Problem& p) {
+  return "cgvi, " + TimeElementKeys(p.parameters).in_words() + space_label(p);
+}
 
 std::vector<Parameter> keys() {
   std::vector<Parameter> list = TimeElementKeys::parameters();
@@ -169,6 +171,24 @@ std::optional<int> cgvi_order(const Problem& p) {
     return std::nullopt;
   const int of_rule = 2 * keys.points - (keys.quadrature == "lobatto" ? 2 : 0);
   return order_in_space(p, std::min(2 * (keys.functions - 1), of_rule));
+}
+
+std::vector<std::string> sources_of_tableau(const Problem& p) {
+  const std::string tableau = TimeElementKeys(p.parameters).tableau;
+  if (tableau.empty()) return {};
+  return std::ranges::find(time_tableaux(), tableau, &TimeTableau::name)->sources;
+}
+
+std::string cgvi_words(const Problem& p) {
+  const TimeElementKeys keys(p.parameters);
+  const std::string time =
+      keys.tableau.empty()
+          ? fmt::format(
+                "the continuous Galerkin variational integrator with {} basis functions ({}) and {} quadrature of "
+                "{} point{} in time",
+                keys.functions, keys.basis_name, keys.quadrature, keys.points, keys.points == 1 ? "" : "s")
+          : std::ranges::find(time_tableaux(), keys.tableau, &TimeTableau::name)->words + " in time";
+  return time + space_in_words(p);
 }
 
 }  // namespace
@@ -189,6 +209,9 @@ const MethodEntry cgvi_method{
                   .components = momentum_names,
                   .values = momentum}},
     .variants = cgvi_variants,
-    .order = cgvi_order};
+    .order = cgvi_order,
+    .words = cgvi_words,
+    .sources = {"marsden-west-2001", "ober-blobaum-saake-2015"},
+    .further_sources = sources_of_tableau};
 
 }  // namespace delf

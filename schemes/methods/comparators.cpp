@@ -62,16 +62,24 @@ const MethodEntry vu_quoc_li_method{
     .formula = "comparator (5.14): conserves an energy, is not multisymplectic",
     .build = [](const FieldTheory& theory, const Problem& p) { return comparator_parts(theory, p, vu_quoc_li()); },
     .own_energy = &vu_quoc_li_energy,
-    .order = second};
+    .order = second,
+    .words = [](const Problem&) -> std::string { return "the energy-conserving difference scheme of Vu-Quoc and Li"; },
+    .sources = {"vu-quoc-li-1993", "marsden-patrick-shkoller-1998"}};
 const MethodEntry guo_method{
     .name = "guo",
     .formula = "comparator (5.15): conserves an energy, is not multisymplectic",
     .build = [](const FieldTheory& theory, const Problem& p) { return comparator_parts(theory, p, guo()); },
     .own_energy = &guo_energy,
-    .order = second};
+    .order = second,
+    .words = [](const Problem&) -> std::string {
+      return "the energy-conserving difference scheme of Guo, Pascual, Rodriguez and Vázquez";
+    },
+    .sources = {"guo-1986", "marsden-patrick-shkoller-1998"}};
 const MethodEntry damped_method{
     .name = "damped",
     .formula = "comparator: leapfrog with friction 0.1, loses energy; for checks to fail on",
-    .build = [](const FieldTheory& theory, const Problem& p) { return comparator_parts(theory, p, damped_leapfrog()); }};
+    .build = [](const FieldTheory& theory, const Problem& p) { return comparator_parts(theory, p, damped_leapfrog()); },
+    .words = [](const Problem&) -> std::string { return "leapfrog with friction 0.1, a comparator that loses energy"; },
+    .sources = {"delf"}};
 
 }  // namespace delf

@@ -43,9 +43,7 @@ Parameter unless_given(Parameter parameter) {
 }
 
 /// Mechanics, and cells that have a space of their own.
-bool has_no_pairs(const Problem& p) {
-  return p.lattice.space() == Space::point || p.lattice.space() == Space::mesh;
-}
+bool has_no_pairs(const Problem& p) { return p.lattice.space() == Space::point || p.lattice.space() == Space::mesh; }
 
 SchemeParts composition_parts(const FieldTheory& theory, const Problem& p) {
   if (has_no_pairs(p)) {
@@ -86,6 +84,25 @@ std::optional<int> composition_order(const Problem& p) {
   return std::min(time, p.lattice.space() == Space::mesh ? 2 : space_order_of(p));
 }
 
+/// The sources of the splitting, by its name or by the order.
+std::vector<std::string> sources_of_splitting(const Problem& p) {
+  const auto name = p.parameters.maybe<std::string>("scheme.splitting");
+  const std::vector<double> kicks = splitting_of(p).kicks;
+  for (const NamedSplitting& named : named_splittings())
+    if (name ? *name == named.name : named.make().kicks == kicks) return named.sources;
+  return {};
+}
+
+std::string composition_words(const Problem& p) {
+  const auto name = p.parameters.maybe<std::string>("scheme.splitting");
+  const int order = p.parameters.maybe<int>("scheme.order").value_or(usual_time_order);
+  std::string words = name ? fmt::format("the explicit symplectic splitting {} in time", *name)
+                           : fmt::format("an explicit symplectic splitting of order {} in time", order);
+  if (p.lattice.mesh()) words += " with linear finite elements of lumped mass in space";
+  else if (!has_no_pairs(p)) words += fmt::format(" with central differences of order {} in space", space_order_of(p));
+  return words;
+}
+
 }  // namespace
 
 extern const EnergyEntry composition_energy;
@@ -110,6 +127,9 @@ const MethodEntry composition_method{
     .start = StartRule::legendre,
     .own_energy = &composition_energy,
     .variants = composition_variants,
-    .order = composition_order};
+    .order = composition_order,
+    .words = composition_words,
+    .sources = {"mclachlan-quispel-2002", "fornberg-1988"},
+    .further_sources = sources_of_splitting};
 
 }  // namespace delf

@@ -204,6 +204,16 @@ std::string dgvi_label(const Problem& p) {
          space_label(p);
 }
 
+std::string dgvi_words(const Problem& p) {
+  const DgviKeys keys(p);
+  return fmt::format(
+             "the discontinuous Galerkin variational integrator with {} basis functions ({}), {} quadrature of {} "
+             "point{} and the {} flux in time",
+             keys.functions, keys.basis_name, keys.quadrature, keys.points, keys.points == 1 ? "" : "s",
+             keys.flux.name) +
+         space_in_words(p);
+}
+
 }  // namespace
 
 extern const MethodEntry dgvi_method;
@@ -233,6 +243,8 @@ const MethodEntry dgvi_method{
                   .value = jump,
                   .when_it_grows = "a mode of the doubled phase space takes over, and the energy does not show it; run "
                                    "less far, or use scheme.flux = one-sided in a gauge that allows it"}},
-    .variants = dgvi_variants};
+    .variants = dgvi_variants,
+    .words = dgvi_words,
+    .sources = {"kraus-2017", "geometric-integrators-2020"}};
 
 }  // namespace delf

@@ -118,6 +118,12 @@ struct MethodEntry {
   /// The order of the error at a fixed h/k, for smooth solutions, from the values of all parameters; null, or nothing: not
   /// known. `delf convergence` holds runs to it.
   std::optional<int> (*order)(const Problem&) = nullptr;
+
+  /// The scheme as a clause of a paper, from the values of all parameters: "the Gauss method of two stages". Null: the label.
+  std::string (*words)(const Problem&) = nullptr;
+  std::vector<std::string> sources = {};  ///< the method, as keys of tools/cite/references.bib
+  /// The sources of what its keys choose: a stencil, a splitting, a tableau. Null: nothing.
+  std::vector<std::string> (*further_sources)(const Problem&) = nullptr;
 };
 
 /// All methods, the built-in ones first: a new method adds one line there.

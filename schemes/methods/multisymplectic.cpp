@@ -267,6 +267,19 @@ std::optional<int> multisymplectic_order(const Problem& p) {
   return 2;
 }
 
+/// The sources of the stencil; on a mesh those of its steps; none of a stencil that the scene gives as text.
+std::vector<std::string> sources_of_stencil(const Problem& p) {
+  const auto named = std::ranges::find(named_tables(), p.lattice.mesh() ? "trapezoidal" : p.stencil, &NamedTable::name);
+  return named == named_tables().end() ? std::vector<std::string>{} : named->sources;
+}
+
+std::string multisymplectic_words(const Problem& p) {
+  if (p.lattice.mesh()) return "the Störmer–Verlet method in time with linear finite elements of lumped mass in space";
+  const auto named = std::ranges::find(named_tables(), p.stencil, &NamedTable::name);
+  return named != named_tables().end() ? "the discrete Euler–Lagrange equations of " + named->words
+                                       : "the discrete Euler–Lagrange equations of a stencil that the scene states";
+}
+
 }  // namespace
 
 extern const MethodEntry multisymplectic_method;
@@ -309,6 +322,9 @@ const MethodEntry multisymplectic_method{
     .starts = {StartRule::exact, StartRule::centred, StartRule::values},
     .row_density = density_of_mesh_rows,
     .variants = multisymplectic_variants,
-    .order = multisymplectic_order};
+    .order = multisymplectic_order,
+    .words = multisymplectic_words,
+    .sources = {"marsden-patrick-shkoller-1998"},
+    .further_sources = sources_of_stencil};
 
 }  // namespace delf

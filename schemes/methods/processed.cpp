@@ -117,6 +117,16 @@ std::optional<int> processed_order(const Problem& p) {
   return std::min(time, p.parameters.get<int>("lattice.space_order"));
 }
 
+std::string processed_words(const Problem& p) {
+  const bool suited = p.parameters.get<std::string>("lattice.pairs") == "suited";
+  const int reach = p.parameters.get<int>("lattice.space_order");
+  return fmt::format(
+      "the explicit symplectic kernel {}{} in time with central differences {} in space",
+      p.parameters.get<std::string>("scheme.kernel"),
+      has_processor(p) ? ", corrected by its processor," : " without its processor",
+      suited ? fmt::format("over {} sites fitted to analytic fields", reach + 1) : fmt::format("of order {}", reach));
+}
+
 }  // namespace
 
 extern const MethodEntry processed_method;
@@ -153,6 +163,12 @@ const MethodEntry processed_method{
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
     .variants = processed_variants,
-    .order = processed_order};
+    .order = processed_order,
+    .words = processed_words,
+    .sources = {"blanes-casas-ros-1999", "fornberg-1988"},
+    .further_sources = [](const Problem& p) -> std::vector<std::string> {
+      // b6 and both processors were found for delf
+      return {p.parameters.get<std::string>("scheme.kernel") == "ti4" ? "takahashi-imada-1984" : "delf"};
+    }};
 
 }  // namespace delf

@@ -18,6 +18,7 @@
 #include "jets/tables/radau_element.hpp"
 #include "jets/tables/space_table.hpp"
 #include "jets/tables/table_product.hpp"
+#include "jets/tables/time_tableau.hpp"
 #include "lattice/error.hpp"
 #include "schemes/declared.hpp"
 #include "schemes/driven_ends.hpp"
@@ -67,6 +68,12 @@ StencilTable element(const NamedTime& time) {
 std::string strategy(const Problem& p) { return p.parameters.get<std::string>("scheme.strategy"); }
 const NamedTime& time_of(const Problem& p) {
   return *std::ranges::find(times(), p.parameters.get<std::string>("scheme.time"), &NamedTime::name);
+}
+/// The sources of scheme.time.
+std::vector<std::string> sources_of_time(const Problem& p) {
+  const std::string& tableau = time_of(p).tableau;
+  return tableau.empty() ? std::vector<std::string>{"hairer-wanner-1996"}
+                         : std::ranges::find(time_tableaux(), tableau, &TimeTableau::name)->sources;
 }
 
 MeshMonitor monitor_of(const Problem& p, const std::vector<Component>& fields) {
@@ -236,6 +243,27 @@ std::vector<std::string> time_names() {
   return names;
 }
 
+std::string r_adaptive_words(const Problem& p) {
+  const NamedTime& time = time_of(p);
+  const std::string in_time = time.rectangle ? "the trapezoidal rule"
+                              : time.tableau.empty()
+                                  ? "the Radau IIA method of order 5"
+                                  : std::ranges::find(time_tableaux(), time.tableau, &TimeTableau::name)->words;
+  if (strategy(p) == "uniform") return "linear finite elements on a uniform mesh, stepped by " + in_time;
+  const std::string monitor = p.parameters.get<std::string>("mesh.monitor");
+  const bool formula = monitor != "arclength" && monitor != "saturated" && monitor != "uniform";
+  return fmt::format(
+      "linear finite elements on a moving mesh that equidistributes {}{}, {}, stepped by {}",
+      monitor == "arclength"   ? "arclength"
+      : monitor == "saturated" ? "a saturated arclength"
+      : monitor == "uniform"   ? "length"
+                               : "the monitor " + monitor,
+      monitor == "uniform" || formula ? ""
+                                      : fmt::format(" with $\\alpha = {:g}$", p.parameters.get<double>("mesh.alpha")),
+      strategy(p) == "multiplier" ? "by Lagrange multipliers" : "slaved to the field (the control-theoretic strategy)",
+      in_time);
+}
+
 }  // namespace
 
 extern const MethodEntry r_adaptive_method;
@@ -289,6 +317,9 @@ const MethodEntry r_adaptive_method{
                  {.name = "multiplier_max", .value = largest_multiplier}},
     .limit = limit,
     .row_density = row_density,
-    .place_sites = place_sites};
+    .place_sites = place_sites,
+    .words = r_adaptive_words,
+    .sources = {"tyranowski-desbrun-2019"},
+    .further_sources = sources_of_time};
 
 }  // namespace delf

@@ -32,9 +32,15 @@ SchemeParts radau_iia_parts(const FieldTheory& theory, const Problem& p) {
   return parts;
 }
 
-std::string radau_iia_label(const Problem& p) { return fmt::format("Radau IIA, {} stages{}", stages(p), space_label(p)); }
+std::string radau_iia_label(const Problem& p) {
+  return fmt::format("Radau IIA, {} stages{}", stages(p), space_label(p));
+}
 
 std::optional<int> radau_iia_order(const Problem& p) { return order_in_space(p, 2 * stages(p) - 1); }
+
+std::string radau_iia_words(const Problem& p) {
+  return fmt::format("the Radau IIA method of {} stages in time", stages(p)) + space_in_words(p);
+}
 
 }  // namespace
 
@@ -55,6 +61,8 @@ const MethodEntry radau_iia_method{
     .starts = {StartRule::legendre},
     .start = StartRule::legendre,
     .energy = &hamiltonian_of_row,
-    .order = radau_iia_order};
+    .order = radau_iia_order,
+    .words = radau_iia_words,
+    .sources = {"hairer-wanner-1996"}};
 
 }  // namespace delf

@@ -73,6 +73,15 @@ StencilTable space_table(const Problem& p) {
   return space == "linear" ? linear_space() : spectral_space(1);
 }
 
+std::string space_in_words(const Problem& p) {
+  if (p.lattice.space() == Space::point) return {};
+  if (p.lattice.mesh()) return " with linear finite elements of lumped mass in space";
+  const std::string space = space_of(p);
+  if (space == "pairs") return fmt::format(" with central differences of order {} in space", order_of(p));
+  if (space == "spectral") return fmt::format(" with spectral elements of degree {} in space", degree_of(p));
+  return space == "linear" ? " with linear finite elements in space"
+                           : " with linear finite elements of lumped mass in space";
+}
 std::string space_label(const Problem& p) {
   if (p.lattice.space() == Space::point || p.lattice.space() == Space::mesh) return {};
   const std::string space = space_of(p);

@@ -19,6 +19,8 @@ Parameter space_key(), space_order_key(), degree_space_key();
 StencilTable space_table(const Problem&);
 /// The space in labels: ", lumped", ", linear", ", pairs of order 4", ", spectral of degree 2"; nothing on a point.
 std::string space_label(const Problem&);
+/// The space as a clause of a paper: " with linear finite elements in space"; nothing on a point.
+std::string space_in_words(const Problem&);
 /// The order of a method that has this one in time, in that space; nothing where it is not known (spectral elements).
 std::optional<int> order_in_space(const Problem&, int in_time);
 

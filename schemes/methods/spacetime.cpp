@@ -60,6 +60,14 @@ std::string spacetime_label(const Problem& p) {
   return fmt::format("spacetime of degrees {} and {}, {}", keys.degree_time, keys.degree_space, keys.quadrature);
 }
 
+std::string spacetime_words(const Problem& p) {
+  const SpacetimeKeys keys(p);
+  return fmt::format(
+      "continuous Galerkin elements of spacetime, of degree {} in time and {} in space, with Lobatto nodes and "
+      "{} quadrature in time",
+      keys.degree_time, keys.degree_space, keys.quadrature);
+}
+
 }  // namespace
 
 extern const MethodEntry spacetime_method;
@@ -83,6 +91,8 @@ const MethodEntry spacetime_method{
     .starts = {StartRule::exact, StartRule::centred, StartRule::legendre},
     .start = StartRule::legendre,
     .energy = &hamiltonian_of_row,
-    .variants = spacetime_variants};
+    .variants = spacetime_variants,
+    .words = spacetime_words,
+    .sources = {"marsden-patrick-shkoller-1998", "hall-leok-2015"}};
 
 }  // namespace delf

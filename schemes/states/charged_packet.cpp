@@ -71,13 +71,14 @@ std::unique_ptr<State> charged_packet(const StateBuild& build) {
 
 extern const StateEntry charged_packet_state;
 const StateEntry charged_packet_state{
-    "charged-packet",
-    "A exp(-s^2/2w^2) exp(i(q s - omega t)), s = x - x0, q = 2 pi n/L, omega^2 = q^2 + m^2",
-    {initial::amplitude_parameter(0.1), initial::width_parameter(), initial::packet_wavenumber_parameter(),
-     initial::position_parameter()},
-    {},
-    {"complex-klein-gordon"},
-    Place::circle,
-    initial::charged_packet};
+    .name = "charged-packet",
+    .formula = "A exp(-s^2/2w^2) exp(i(q s - omega t)), s = x - x0, q = 2 pi n/L, omega^2 = q^2 + m^2",
+    .parameters = {initial::amplitude_parameter(0.1), initial::width_parameter(),
+                   initial::packet_wavenumber_parameter(), initial::position_parameter()},
+    .exact = {},
+    .approximate = {"complex-klein-gordon"},
+    .place = Place::circle,
+    .build = initial::charged_packet,
+    .sources = {"whitham-1974"}};
 
 }  // namespace delf

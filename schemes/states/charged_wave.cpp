@@ -48,12 +48,14 @@ std::unique_ptr<State> charged_wave(const StateBuild& build) {
 }  // namespace initial
 
 extern const StateEntry charged_wave_state;
-const StateEntry charged_wave_state{"charged-wave",
-                                    "A exp(i(q x - omega t)), q = 2 pi n/L, omega^2 = q^2 + m^2 + lambda A^2",
-                                    {initial::amplitude_parameter(1), initial::wavenumber_parameter(1)},
-                                    {"complex-klein-gordon"},
-                                    {},
-                                    Place::circle,
-                                    initial::charged_wave};
+const StateEntry charged_wave_state{
+    .name = "charged-wave",
+    .formula = "A exp(i(q x - omega t)), q = 2 pi n/L, omega^2 = q^2 + m^2 + lambda A^2",
+    .parameters = {initial::amplitude_parameter(1), initial::wavenumber_parameter(1)},
+    .exact = {"complex-klein-gordon"},
+    .approximate = {},
+    .place = Place::circle,
+    .build = initial::charged_wave,
+    .sources = {"whitham-1974"}};
 
 }  // namespace delf

@@ -65,28 +65,27 @@ Parameter separation() {
 
 extern const StateEntry coupled_kinks_state;
 const StateEntry coupled_kinks_state{
-    "coupled-kinks",
-    "the sine-Gordon kink in both components; with a separation d, at x0 - d/2 and x0 + d/2",
-    {initial::position_parameter(), initial::speed_parameter(0), initial::separation()},
-    {"coupled-sine-gordon"},
-    {},
-    Place::line,
-    [](const StateBuild& build) { return initial::coupled(build, kink_state); },
-    false,
-    {},
-    [](const StateBuild& build) { return kink_state.width(build); }};
+    .name = "coupled-kinks",
+    .formula = "the sine-Gordon kink in both components; with a separation d, at x0 - d/2 and x0 + d/2",
+    .parameters = {initial::position_parameter(), initial::speed_parameter(0), initial::separation()},
+    .exact = {"coupled-sine-gordon"},
+    .approximate = {},
+    .place = Place::line,
+    .build = [](const StateBuild& build) { return initial::coupled(build, kink_state); },
+    .width = [](const StateBuild& build) { return kink_state.width(build); },
+    .sources = {"delf"}};
 
 extern const StateEntry coupled_breathers_state;
 const StateEntry coupled_breathers_state{
-    "coupled-breathers",
-    "the sine-Gordon breather in both components; with a separation d, at x0 - d/2 and x0 + d/2",
-    {initial::position_parameter(), initial::speed_parameter(0), initial::frequency_parameter(), initial::separation()},
-    {"coupled-sine-gordon"},
-    {},
-    Place::line,
-    [](const StateBuild& build) { return initial::coupled(build, breather_state); },
-    false,
-    {},
-    [](const StateBuild& build) { return breather_state.width(build); }};
+    .name = "coupled-breathers",
+    .formula = "the sine-Gordon breather in both components; with a separation d, at x0 - d/2 and x0 + d/2",
+    .parameters = {initial::position_parameter(), initial::speed_parameter(0), initial::frequency_parameter(),
+                   initial::separation()},
+    .exact = {"coupled-sine-gordon"},
+    .approximate = {},
+    .place = Place::line,
+    .build = [](const StateBuild& build) { return initial::coupled(build, breather_state); },
+    .width = [](const StateBuild& build) { return breather_state.width(build); },
+    .sources = {"delf"}};
 
 }  // namespace delf

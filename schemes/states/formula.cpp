@@ -216,6 +216,7 @@ const StateEntry formula_state{
     .place = Place::anywhere,
     .build = initial::formula,
     .any_theory = true,
-    .further = initial::further};
+    .further = initial::further,
+    .sources = {"delf"}};
 
 }  // namespace delf

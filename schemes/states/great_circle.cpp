@@ -70,13 +70,15 @@ std::unique_ptr<State> great_circle(const StateBuild& build) {
 
 extern const StateEntry great_circle_state;
 const StateEntry great_circle_state{
-    "great-circle",
-    "cos(alpha) e1 + sin(alpha) e2, alpha = A cos(q (x - t)) + (A/2) sin(2 q x) cos(2 q t), q = 2 pi n/L, e1 and e2 "
-    "fixed and orthogonal",
-    {initial::amplitude_parameter(1), initial::wavenumber_parameter(1)},
-    {"wave-map"},
-    {},
-    Place::circle,
-    initial::great_circle};
+    .name = "great-circle",
+    .formula =
+        "cos(alpha) e1 + sin(alpha) e2, alpha = A cos(q (x - t)) + (A/2) sin(2 q x) cos(2 q t), q = 2 pi n/L, e1 and e2 "
+        "fixed and orthogonal",
+    .parameters = {initial::amplitude_parameter(1), initial::wavenumber_parameter(1)},
+    .exact = {"wave-map"},
+    .approximate = {},
+    .place = Place::circle,
+    .build = initial::great_circle,
+    .sources = {"shatah-struwe-1998"}};
 
 }  // namespace delf

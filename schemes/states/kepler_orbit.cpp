@@ -67,12 +67,13 @@ std::unique_ptr<State> kepler_orbit(const StateBuild& build) {
 }  // namespace initial
 
 extern const StateEntry kepler_orbit_state;
-const StateEntry kepler_orbit_state{"kepler-orbit",
-                                    "(cos E - e, sqrt(1 - e^2) sin E), E - e sin E = t",
-                                    {{"initial.eccentricity", 0.6, "e: eccentricity of an orbit"}},
-                                    {"kepler"},
-                                    {},
-                                    Place::point,
-                                    initial::kepler_orbit};
+const StateEntry kepler_orbit_state{.name = "kepler-orbit",
+                                    .formula = "(cos E - e, sqrt(1 - e^2) sin E), E - e sin E = t",
+                                    .parameters = {{"initial.eccentricity", 0.6, "e: eccentricity of an orbit"}},
+                                    .exact = {"kepler"},
+                                    .approximate = {},
+                                    .place = Place::point,
+                                    .build = initial::kepler_orbit,
+                                    .sources = {"hairer-lubich-wanner-2006"}};
 
 }  // namespace delf

@@ -120,15 +120,17 @@ Parameter modes() {
 
 extern const StateEntry noise_state;
 const StateEntry noise_state{
-    "noise",
-    "a sum of M smooth modes of random amplitude and phase, drawn from run.seed, scaled to max |phi| = A in each "
-    "component",
-    {initial::amplitude_parameter(0.1), initial::modes()},
-    {},
-    {},
-    Place::line,
-    initial::noise,
-    true,
-    {"kepler", "solar-system", "wave-map", "spherical-pendulum"}};  // singular at 0; not on the sphere
+    .name = "noise",
+    .formula =
+        "a sum of M smooth modes of random amplitude and phase, drawn from run.seed, scaled to max |phi| = A in each "
+        "component",
+    .parameters = {initial::amplitude_parameter(0.1), initial::modes()},
+    .exact = {},
+    .approximate = {},
+    .place = Place::line,
+    .build = initial::noise,
+    .any_theory = true,
+    .but = {"kepler", "solar-system", "wave-map", "spherical-pendulum"},
+    .sources = {"delf"}};  // singular at 0; not on the sphere
 
 }  // namespace delf

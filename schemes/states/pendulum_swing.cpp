@@ -54,12 +54,13 @@ std::unique_ptr<State> pendulum_swing(const StateBuild& build) {
 }  // namespace initial
 
 extern const StateEntry pendulum_swing_state;
-const StateEntry pendulum_swing_state{"pendulum-swing",
-                                      "2 asin(k sn(K + m t; k)), k = sin(A/2)",
-                                      {initial::amplitude_parameter(2)},
-                                      {"pendulum"},
-                                      {},
-                                      Place::point,
-                                      initial::pendulum_swing};
+const StateEntry pendulum_swing_state{.name = "pendulum-swing",
+                                      .formula = "2 asin(k sn(K + m t; k)), k = sin(A/2)",
+                                      .parameters = {initial::amplitude_parameter(2)},
+                                      .exact = {"pendulum"},
+                                      .approximate = {},
+                                      .place = Place::point,
+                                      .build = initial::pendulum_swing,
+                                      .sources = {"dlmf"}};
 
 }  // namespace delf

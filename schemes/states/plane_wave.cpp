@@ -75,13 +75,15 @@ Parameter origin() {
 
 extern const StateEntry plane_wave_state;
 const StateEntry plane_wave_state{
-    "plane-wave",
-    "A cos(q (x - x0) - omega t), q = 2 pi n/L, omega^2 = q^2 + m^2; between walls the standing mode n times "
-    "cos(omega t)",
-    {initial::wave_amplitude_parameter(), initial::wavenumber_parameter(1), initial::origin()},
-    {"wave", "klein-gordon"},
-    {"sine-gordon", "double-sine-gordon", "sine-gordon-impurity"},
-    Place::line,
-    initial::plane_wave};
+    .name = "plane-wave",
+    .formula =
+        "A cos(q (x - x0) - omega t), q = 2 pi n/L, omega^2 = q^2 + m^2; between walls the standing mode n times "
+        "cos(omega t)",
+    .parameters = {initial::wave_amplitude_parameter(), initial::wavenumber_parameter(1), initial::origin()},
+    .exact = {"wave", "klein-gordon"},
+    .approximate = {"sine-gordon", "double-sine-gordon", "sine-gordon-impurity"},
+    .place = Place::line,
+    .build = initial::plane_wave,
+    .sources = {"whitham-1974"}};
 
 }  // namespace delf

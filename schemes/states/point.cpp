@@ -53,16 +53,17 @@ Parameter list_parameter(const char* key, const char* help, const char* unit, co
 
 extern const StateEntry point_state;
 const StateEntry point_state{
-    "point",
-    "q and q_t, or q and p = dL/dq_t",
-    {initial::list_parameter("initial.q", "q of every field, separated by commas", "", "0"),
-     initial::list_parameter("initial.v", "q_t of every field, separated by commas", "1/time", "0"),
-     initial::list_parameter("initial.p", "p = dL/dq_t of every field, in place of initial.v", "",
-                             "that of initial.v")},
-    {},
-    {},
-    Place::point,
-    initial::point,
-    true};
+    .name = "point",
+    .formula = "q and q_t, or q and p = dL/dq_t",
+    .parameters = {initial::list_parameter("initial.q", "q of every field, separated by commas", "", "0"),
+                   initial::list_parameter("initial.v", "q_t of every field, separated by commas", "1/time", "0"),
+                   initial::list_parameter("initial.p", "p = dL/dq_t of every field, in place of initial.v", "",
+                                           "that of initial.v")},
+    .exact = {},
+    .approximate = {},
+    .place = Place::point,
+    .build = initial::point,
+    .any_theory = true,
+    .sources = {"delf"}};
 
 }  // namespace delf

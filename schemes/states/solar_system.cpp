@@ -44,8 +44,13 @@ std::unique_ptr<State> planets(const StateBuild&) { return std::make_unique<Plan
 }  // namespace initial
 
 extern const StateEntry solar_system_state;
-const StateEntry solar_system_state{
-    "solar-system",  "the Sun and the outer planets on 5 September 1994", {}, {}, {"solar-system"}, Place::point,
-    initial::planets};
+const StateEntry solar_system_state{.name = "solar-system",
+                                    .formula = "the Sun and the outer planets on 5 September 1994",
+                                    .parameters = {},
+                                    .exact = {},
+                                    .approximate = {"solar-system"},
+                                    .place = Place::point,
+                                    .build = initial::planets,
+                                    .sources = {"hairer-lubich-wanner-2006"}};
 
 }  // namespace delf

@@ -55,13 +55,15 @@ std::unique_ptr<State> spherical_swing(const StateBuild& build) {
 
 extern const StateEntry spherical_swing_state;
 const StateEntry spherical_swing_state{
-    "spherical-swing",
-    "(sin A cos wt, sin A sin wt, -cos A)",
-    {initial::amplitude_parameter(1),
-     {"initial.azimuth_rate", 0.0, "w: how fast the azimuth grows", "1/time", {}, {}, "1/sqrt(cos A): on a cone"}},
-    {"spherical-pendulum"},
-    {},
-    Place::point,
-    initial::spherical_swing};
+    .name = "spherical-swing",
+    .formula = "(sin A cos wt, sin A sin wt, -cos A)",
+    .parameters =
+        {initial::amplitude_parameter(1),
+         {"initial.azimuth_rate", 0.0, "w: how fast the azimuth grows", "1/time", {}, {}, "1/sqrt(cos A): on a cone"}},
+    .exact = {"spherical-pendulum"},
+    .approximate = {},
+    .place = Place::point,
+    .build = initial::spherical_swing,
+    .sources = {"arnold-1989"}};
 
 }  // namespace delf

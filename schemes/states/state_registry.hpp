@@ -45,6 +45,7 @@ struct StateEntry {
   /// Parameters that belong to fields of these names; null: none. Where a scene gives one of them, and no initial.state, the
   /// state is chosen by that.
   std::vector<Parameter> (*further)(const std::vector<std::string>& fields) = nullptr;
+  std::vector<std::string> sources = {};  ///< the solution or the data, as keys of tools/cite/references.bib
 };
 
 /// All that it reads from fields of these names.

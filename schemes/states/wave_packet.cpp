@@ -90,13 +90,15 @@ std::unique_ptr<State> wave_packet(const StateBuild& build) {
 }  // namespace initial
 
 extern const StateEntry wave_packet_state;
-const StateEntry wave_packet_state{"wave-packet",
-                                   "A exp(-s^2/2w^2) cos(2 pi n s/L), s = x - x0, each mode with its own omega",
-                                   {initial::wave_amplitude_parameter(), initial::width_parameter(),
-                                    initial::packet_wavenumber_parameter(), initial::position_parameter()},
-                                   {"wave", "klein-gordon"},
-                                   {"sine-gordon", "double-sine-gordon", "sine-gordon-impurity"},
-                                   Place::circle,
-                                   initial::wave_packet};
+const StateEntry wave_packet_state{
+    .name = "wave-packet",
+    .formula = "A exp(-s^2/2w^2) cos(2 pi n s/L), s = x - x0, each mode with its own omega",
+    .parameters = {initial::wave_amplitude_parameter(), initial::width_parameter(),
+                   initial::packet_wavenumber_parameter(), initial::position_parameter()},
+    .exact = {"wave", "klein-gordon"},
+    .approximate = {"sine-gordon", "double-sine-gordon", "sine-gordon-impurity"},
+    .place = Place::circle,
+    .build = initial::wave_packet,
+    .sources = {"whitham-1974"}};
 
 }  // namespace delf

@@ -8,13 +8,15 @@ namespace delf {
 
 extern const TheoryEntry complex_klein_gordon_theory;
 const TheoryEntry complex_klein_gordon_theory{
-    "complex-klein-gordon",
-    "φ_tt − φ_xx + m²φ + λ|φ|²φ = 0",
-    {mass_parameter(), lambda_parameter()},
-    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+    .name = "complex-klein-gordon",
+    .formula = "φ_tt − φ_xx + m²φ + λ|φ|²φ = 0",
+    .parameters = {mass_parameter(), lambda_parameter()},
+    .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<ComplexKleinGordon>>(
           ComplexKleinGordon{p.get<double>("theory.mass"), p.get<double>("theory.lambda")});
     },
-    false, 0.0};
+    .vacuum = 0.0,
+    .words = "the complex Klein–Gordon equation with a cubic term",
+    .sources = {"klein-1926", "gordon-1926"}};
 
 }  // namespace delf

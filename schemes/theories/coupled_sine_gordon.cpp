@@ -7,13 +7,16 @@
 namespace delf {
 
 extern const TheoryEntry coupled_sine_gordon_theory;
-const TheoryEntry coupled_sine_gordon_theory{"coupled-sine-gordon",
-                                             "φ_a,tt − φ_a,xx + m² sin φ_a + λ sin(φ_a − φ_b) = 0",
-                                             {mass_parameter(), lambda_parameter()},
-                                             [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+const TheoryEntry coupled_sine_gordon_theory{.name = "coupled-sine-gordon",
+                                             .formula = "φ_a,tt − φ_a,xx + m² sin φ_a + λ sin(φ_a − φ_b) = 0",
+                                             .parameters = {mass_parameter(), lambda_parameter()},
+                                             .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
                                                return std::make_unique<TheoryOf<CoupledSineGordon>>(CoupledSineGordon{
                                                    p.get<double>("theory.mass"), p.get<double>("theory.lambda")});
                                              },
-                                             true, 0.0};
+                                             .angle = true,
+                                             .vacuum = 0.0,
+                                             .words = "two coupled sine-Gordon equations",
+                                             .sources = {"delf"}};
 
 }  // namespace delf

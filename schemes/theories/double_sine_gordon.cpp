@@ -7,13 +7,16 @@
 namespace delf {
 
 extern const TheoryEntry double_sine_gordon_theory;
-const TheoryEntry double_sine_gordon_theory{"double-sine-gordon",
-                                            "φ_tt − φ_xx + m² sin φ + λ sin 2φ = 0",
-                                            {mass_parameter(), lambda_parameter()},
-                                            [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+const TheoryEntry double_sine_gordon_theory{.name = "double-sine-gordon",
+                                            .formula = "φ_tt − φ_xx + m² sin φ + λ sin 2φ = 0",
+                                            .parameters = {mass_parameter(), lambda_parameter()},
+                                            .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
                                               return std::make_unique<TheoryOf<DoubleSineGordon>>(DoubleSineGordon{
                                                   p.get<double>("theory.mass"), p.get<double>("theory.lambda")});
                                             },
-                                            true, 0.0};
+                                            .angle = true,
+                                            .vacuum = 0.0,
+                                            .words = "the double sine-Gordon equation",
+                                            .sources = {"campbell-peyrard-sodano-1986"}};
 
 }  // namespace delf

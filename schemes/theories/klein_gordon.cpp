@@ -8,12 +8,14 @@ namespace delf {
 
 extern const TheoryEntry klein_gordon_theory;
 const TheoryEntry klein_gordon_theory{
-    "klein-gordon",
-    "φ_tt − φ_xx + m²φ = 0",
-    {mass_parameter()},
-    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+    .name = "klein-gordon",
+    .formula = "φ_tt − φ_xx + m²φ = 0",
+    .parameters = {mass_parameter()},
+    .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<KleinGordon>>(KleinGordon{p.get<double>("theory.mass")});
     },
-    false, 0.0};
+    .vacuum = 0.0,
+    .words = "the Klein–Gordon equation",
+    .sources = {"klein-1926", "gordon-1926"}};
 
 }  // namespace delf

@@ -7,12 +7,14 @@
 namespace delf {
 
 extern const TheoryEntry phi4_theory;
-const TheoryEntry phi4_theory{"phi4",
-                              "φ_tt − φ_xx + λ(φ³ − φ) = 0",
-                              {lambda_parameter()},
-                              [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+const TheoryEntry phi4_theory{.name = "phi4",
+                              .formula = "φ_tt − φ_xx + λ(φ³ − φ) = 0",
+                              .parameters = {lambda_parameter()},
+                              .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
                                 return std::make_unique<TheoryOf<PhiFour>>(PhiFour{p.get<double>("theory.lambda")});
                               },
-                              false, 1.0};
+                              .vacuum = 1.0,
+                              .words = "the φ⁴ equation",
+                              .sources = {"campbell-schonfeld-wingate-1983"}};
 
 }  // namespace delf

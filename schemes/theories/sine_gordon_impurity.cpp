@@ -8,21 +8,23 @@ namespace delf {
 
 extern const TheoryEntry sine_gordon_impurity_theory;
 const TheoryEntry sine_gordon_impurity_theory{
-    "sine-gordon-impurity",
-    "φ_tt − φ_xx + m²(1 + ε exp(−((x − x₀)/w)²)) sin φ = 0",
-    {mass_parameter(),
-     {.key = "theory.strength", .fallback = 1.0, .help = "strength of the impurity"},
-     {.key = "theory.width",
-      .fallback = 1.0,
-      .help = "width of the impurity",
-      .unit = "length",
-      .range = {.low = 0, .open = true}},
-     {.key = "theory.position", .fallback = 0.0, .help = "position of the impurity", .unit = "length"}},
-    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+    .name = "sine-gordon-impurity",
+    .formula = "φ_tt − φ_xx + m²(1 + ε exp(−((x − x₀)/w)²)) sin φ = 0",
+    .parameters = {mass_parameter(),
+                   {.key = "theory.strength", .fallback = 1.0, .help = "strength of the impurity"},
+                   {.key = "theory.width",
+                    .fallback = 1.0,
+                    .help = "width of the impurity",
+                    .unit = "length",
+                    .range = {.low = 0, .open = true}},
+                   {.key = "theory.position", .fallback = 0.0, .help = "position of the impurity", .unit = "length"}},
+    .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<SineGordonImpurity>>(
           SineGordonImpurity{p.get<double>("theory.mass"), p.get<double>("theory.strength"),
                              p.get<double>("theory.width"), p.get<double>("theory.position")});
     },
-    true};
+    .angle = true,
+    .words = "the sine-Gordon equation with an impurity",
+    .sources = {"kivshar-fei-vazquez-1991"}};
 
 }  // namespace delf

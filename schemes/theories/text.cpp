@@ -197,7 +197,8 @@ const TheoryEntry text_theory{
           .otherwise = "none"}},
     .make = make,
     .chosen_by = {density_key, equation_key},
-    .further = further};
+    .further = further,
+    .sources = {"delf"}};
 
 Problem mirrored_in_time(Problem problem, double T) {
   const auto is_end = [](const std::string& key) {  // ends that move as formulas of t

@@ -33,6 +33,8 @@ struct TheoryEntry {
   /// the trapezoidal rule, and of one point of an element, of (φ, X) at both ends, then of h (φ_t, X_t). Null: by quadrature.
   std::shared_ptr<const StencilFamily> (*moving_rectangle)(const ParameterValues&) = nullptr;
   std::shared_ptr<const StencilFamily> (*moving_stage)(const ParameterValues&, double weight) = nullptr;
+  std::string words = {};                 ///< in a paper: "the sine-Gordon equation"
+  std::vector<std::string> sources = {};  ///< its density, as keys of tools/cite/references.bib
 };
 
 /// m and λ, which several theories have.

@@ -7,10 +7,14 @@
 namespace delf {
 
 extern const TheoryEntry wave_theory;
-const TheoryEntry wave_theory{
-    "wave", "φ_tt − φ_xx = 0", {}, [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
-      return std::make_unique<TheoryOf<Wave>>(Wave{});
-    },
-    false, 0.0};
+const TheoryEntry wave_theory{.name = "wave",
+                              .formula = "φ_tt − φ_xx = 0",
+                              .parameters = {},
+                              .make = [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
+                                return std::make_unique<TheoryOf<Wave>>(Wave{});
+                              },
+                              .vacuum = 0.0,
+                              .words = "the wave equation",
+                              .sources = {"whitham-1974"}};
 
 }  // namespace delf

@@ -60,6 +60,7 @@ template <class Body>
 class BodyVerlet final : public BodyPeer<Body> {
  public:
   static constexpr const char* name = "velocity Verlet 2";
+  static constexpr const char* source = "verlet-1967";
   static constexpr int order = 2;
   static constexpr std::size_t forces = 1;
   using BodyPeer<Body>::BodyPeer;
@@ -83,6 +84,7 @@ template <class Body>
 class BodyMcLachlan final : public BodyPeer<Body> {
  public:
   static constexpr const char* name = "rkn-mclachlan 4";
+  static constexpr const char* source = "mclachlan-1995";
   static constexpr int order = 4;
   static constexpr std::size_t forces = 5;
   using BodyPeer<Body>::BodyPeer;
@@ -107,6 +109,7 @@ class BodyFehlberg final : public BodyPeer<Body> {
 
  public:
   static constexpr const char* name = "fehlberg 8";
+  static constexpr const char* source = "fehlberg-1968";
   static constexpr int order = 8;
   static constexpr std::size_t forces = 13;
   using BodyPeer<Body>::BodyPeer;
@@ -129,13 +132,16 @@ class BodyFehlberg final : public BodyPeer<Body> {
 
 template <template <class> class Method, class Body>
 BodyPeerInfo info() {
-  return {std::string("odeint ") + Method<Body>::name, Method<Body>::order, Method<Body>::forces,
+  return {std::string("odeint ") + Method<Body>::name,
+          Method<Body>::order,
+          Method<Body>::forces,
           [](double mass) -> std::unique_ptr<Peer> { return std::make_unique<Method<Body>>(mass); },
           [](double mass, std::span<const double> q, std::span<const double> q_t) {
             double kinetic = 0;
             for (const double v : q_t) kinetic += 0.5 * v * v;
             return kinetic + Body(mass).potential(q);
-          }};
+          },
+          {Method<Body>::source, "ahnert-mulansky-2011"}};
 }
 
 template <class Body>

@@ -15,6 +15,7 @@ struct BodyPeerInfo {
   std::size_t forces;  ///< evaluations of the force in a step
   std::unique_ptr<Peer> (*make)(double mass);
   double (*energy)(double mass, std::span<const double> q, std::span<const double> q_t);
+  std::vector<std::string> sources = {};  ///< keys of tools/cite/references.bib
 };
 
 /// Boost.odeint's integrators of fixed step on the body that scenes call by this theory: pendulum, of m, or kepler. Empty

@@ -50,6 +50,7 @@ template <class Lines>
 class VelocityVerlet final : public TwoRows<Lines> {
  public:
   static constexpr const char* name = "velocity Verlet 2";
+  static constexpr const char* source = "verlet-1967";
   static constexpr int order = 2;
   static constexpr double stable = 2;  ///< h times the highest frequency
   static constexpr std::size_t forces = 1;
@@ -80,6 +81,7 @@ template <class Lines>
 class McLachlan final : public TwoRows<Lines> {
  public:
   static constexpr const char* name = "rkn-mclachlan 4";
+  static constexpr const char* source = "mclachlan-1995";
   static constexpr int order = 4;
   static constexpr double stable = 2.92;
   static constexpr std::size_t forces = 5;
@@ -165,12 +167,14 @@ class BlanesMoan : public TwoRows<Lines> {
 template <class Lines>
 struct BlanesMoan4 final : BlanesMoan<Lines, 4, 6> {
   static constexpr const char* name = "srkn-6b 4";
+  static constexpr const char* source = "blanes-moan-2002";
   static constexpr double stable = 5.026;
   using BlanesMoan<Lines, 4, 6>::BlanesMoan;
 };
 template <class Lines>
 struct BlanesMoan6 final : BlanesMoan<Lines, 6, 11> {
   static constexpr const char* name = "srkn-11b 6";
+  static constexpr const char* source = "blanes-moan-2002";
   static constexpr double stable = 9.073;
   using BlanesMoan<Lines, 6, 11>::BlanesMoan;
 };
@@ -180,6 +184,7 @@ template <class Lines>
 class Fehlberg final : public Peer {
  public:
   static constexpr const char* name = "fehlberg 8";
+  static constexpr const char* source = "fehlberg-1968";
   static constexpr int order = 8;
   static constexpr double stable = 2.36;
   static constexpr std::size_t forces = 13;
@@ -226,7 +231,9 @@ PeerInfo info() {
             return with_force(equation, [&]<class Force>(Force) -> std::unique_ptr<Peer> {
               return std::make_unique<Method<MethodOfLines<p, Force>>>(equation);
             });
-          }};
+          },
+          false,
+          {Any::source, "ahnert-mulansky-2011"}};
 }
 
 }  // namespace

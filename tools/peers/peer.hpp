@@ -30,6 +30,7 @@ struct PeerInfo {
   std::size_t forces;     ///< evaluations of the force in a step
   std::unique_ptr<Peer> (*make)(const WaveEquation&);  ///< throws std::invalid_argument for what it cannot run
   bool processed = false;                              ///< by a processor of its own at the start, undone on copies
+  std::vector<std::string> sources = {};               ///< keys of tools/cite/references.bib
 };
 
 /// All peers of this build.

@@ -304,7 +304,7 @@ std::unique_ptr<Peer> made(const WaveEquation& equation, const Splitting& splitt
 }
 
 template <Splitting splitting(), int order, MassIn mass>
-PeerInfo info() {
+PeerInfo info(const char* source) {
   const char* const kernel = splitting().gradient != 0       ? ", processed gradient"
                              : splitting().processor.empty() ? ""
                                                              : ", processed";
@@ -314,7 +314,8 @@ PeerInfo info() {
           0,
           splitting().inner.size(),
           [](const WaveEquation& equation) { return make_split_step(equation, splitting(), mass); },
-          !splitting().processor.empty()};
+          !splitting().processor.empty(),
+          {source, "frigo-johnson-2005"}};
 }
 
 }  // namespace
@@ -340,12 +341,18 @@ std::unique_ptr<Peer> make_split_step(const WaveEquation& equation, const Splitt
 
 // No Courant number is known for these: flows are exact, and kicks resonate where κh is near a multiple of π, weakly.
 std::vector<PeerInfo> split_step_peers() {
-  return {info<strang, 2, MassIn::kick>(),         info<blanes_moan_4, 4, MassIn::kick>(),
-          info<blanes_moan_6b, 6, MassIn::kick>(), info<kahan_li_8_kicks, 8, MassIn::kick>(),
-          info<processed_ti4, 4, MassIn::kick>(),  info<processed_b6, 6, MassIn::kick>(),
-          info<processed_ti4, 4, MassIn::flow>(),  info<processed_b6, 6, MassIn::flow>(),
-          info<strang, 2, MassIn::flow>(),         info<blanes_moan_4, 4, MassIn::flow>(),
-          info<blanes_moan_6a, 6, MassIn::flow>(), info<kahan_li_8_flows, 8, MassIn::flow>()};
+  return {info<strang, 2, MassIn::kick>("strang-1968"),
+          info<blanes_moan_4, 4, MassIn::kick>("blanes-moan-2002"),
+          info<blanes_moan_6b, 6, MassIn::kick>("blanes-moan-2002"),
+          info<kahan_li_8_kicks, 8, MassIn::kick>("kahan-li-1997"),
+          info<processed_ti4, 4, MassIn::kick>("takahashi-imada-1984"),
+          info<processed_b6, 6, MassIn::kick>("delf"),
+          info<processed_ti4, 4, MassIn::flow>("takahashi-imada-1984"),
+          info<processed_b6, 6, MassIn::flow>("delf"),
+          info<strang, 2, MassIn::flow>("strang-1968"),
+          info<blanes_moan_4, 4, MassIn::flow>("blanes-moan-2002"),
+          info<blanes_moan_6a, 6, MassIn::flow>("blanes-moan-2002"),
+          info<kahan_li_8_flows, 8, MassIn::flow>("kahan-li-1997")};
 }
 
 }  // namespace delf::peers

@@ -102,27 +102,25 @@ double bounce_width(const StateBuild& build) {
 }  // namespace initial
 
 extern const StateEntry soliton_bounce_state;
-const StateEntry soliton_bounce_state{"soliton-bounce",
-                                      "a kink that starts in the middle and bounces between two walls",
-                                      {initial::speed_parameter(0.9)},
-                                      {"sine-gordon"},
-                                      {},
-                                      Place::interval,
-                                      [](const StateBuild& build) { return initial::bounce(build, false); },
-                                      false,
-                                      {},
-                                      initial::bounce_width};
+const StateEntry soliton_bounce_state{.name = "soliton-bounce",
+                                      .formula = "a kink that starts in the middle and bounces between two walls",
+                                      .parameters = {initial::speed_parameter(0.9)},
+                                      .exact = {"sine-gordon"},
+                                      .approximate = {},
+                                      .place = Place::interval,
+                                      .build = [](const StateBuild& build) { return initial::bounce(build, false); },
+                                      .width = initial::bounce_width,
+                                      .sources = {"tyranowski-desbrun-2019"}};
 
 extern const StateEntry two_soliton_bounce_state;
-const StateEntry two_soliton_bounce_state{"two-soliton-bounce",
-                                          "two kinks that bounce off each other and off two walls",
-                                          {initial::speed_parameter(0.9), initial::distance_parameter()},
-                                          {"sine-gordon"},
-                                          {},
-                                          Place::interval,
-                                          [](const StateBuild& build) { return initial::bounce(build, true); },
-                                          false,
-                                          {},
-                                          initial::bounce_width};
+const StateEntry two_soliton_bounce_state{.name = "two-soliton-bounce",
+                                          .formula = "two kinks that bounce off each other and off two walls",
+                                          .parameters = {initial::speed_parameter(0.9), initial::distance_parameter()},
+                                          .exact = {"sine-gordon"},
+                                          .approximate = {},
+                                          .place = Place::interval,
+                                          .build = [](const StateBuild& build) { return initial::bounce(build, true); },
+                                          .width = initial::bounce_width,
+                                          .sources = {"tyranowski-desbrun-2019"}};
 
 }  // namespace delf

@@ -70,16 +70,16 @@ double breather_width(const StateBuild& build) {
 
 extern const StateEntry breather_state;
 const StateEntry breather_state{
-    "breather",
-    "4 atan(eta cos(omega t')/(omega cosh(eta x'))), eta^2 = m^2 - omega^2, t' = gamma (t - v (x - x0)), "
-    "x' = gamma (x - x0 - v t)",
-    {initial::position_parameter(), initial::speed_parameter(0), initial::frequency_parameter()},
-    {"sine-gordon"},
-    {"sine-gordon-impurity"},
-    Place::line,
-    initial::breather,
-    false,
-    {},
-    initial::breather_width};
+    .name = "breather",
+    .formula =
+        "4 atan(eta cos(omega t')/(omega cosh(eta x'))), eta^2 = m^2 - omega^2, t' = gamma (t - v (x - x0)), "
+        "x' = gamma (x - x0 - v t)",
+    .parameters = {initial::position_parameter(), initial::speed_parameter(0), initial::frequency_parameter()},
+    .exact = {"sine-gordon"},
+    .approximate = {"sine-gordon-impurity"},
+    .place = Place::line,
+    .build = initial::breather,
+    .width = initial::breather_width,
+    .sources = {"ablowitz-kaup-newell-segur-1973"}};
 
 }  // namespace delf

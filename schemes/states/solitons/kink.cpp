@@ -69,28 +69,27 @@ double kink_width(const StateBuild& build) {
 
 extern const StateEntry kink_state;
 const StateEntry kink_state{
-    "kink",
-    "4 atan exp(m s), s = gamma (x - x0 - v t); phi4: tanh(sqrt(lambda/2) s); double-sine-gordon: "
-    "2 arccot(-(m/mu) sinh(mu s)), mu^2 = m^2 + 2 lambda",
-    {initial::position_parameter(), initial::speed_parameter(0)},
-    {"sine-gordon", "double-sine-gordon", "phi4"},
-    {"sine-gordon-impurity"},
-    Place::line,
-    [](const StateBuild& build) { return initial::any_kink(build, false); },
-    false,
-    {},
-    initial::kink_width};
+    .name = "kink",
+    .formula =
+        "4 atan exp(m s), s = gamma (x - x0 - v t); phi4: tanh(sqrt(lambda/2) s); double-sine-gordon: "
+        "2 arccot(-(m/mu) sinh(mu s)), mu^2 = m^2 + 2 lambda",
+    .parameters = {initial::position_parameter(), initial::speed_parameter(0)},
+    .exact = {"sine-gordon", "double-sine-gordon", "phi4"},
+    .approximate = {"sine-gordon-impurity"},
+    .place = Place::line,
+    .build = [](const StateBuild& build) { return initial::any_kink(build, false); },
+    .width = initial::kink_width,
+    .sources = {"perring-skyrme-1962"}};
 
 extern const StateEntry antikink_state;
-const StateEntry antikink_state{"antikink",
-                                "the kink with s = -gamma (x - x0 - v t)",
-                                {initial::position_parameter(), initial::speed_parameter(0)},
-                                {"sine-gordon", "double-sine-gordon", "phi4"},
-                                {"sine-gordon-impurity"},
-                                Place::line,
-                                [](const StateBuild& build) { return initial::any_kink(build, true); },
-                                false,
-                                {},
-                                initial::kink_width};
+const StateEntry antikink_state{.name = "antikink",
+                                .formula = "the kink with s = -gamma (x - x0 - v t)",
+                                .parameters = {initial::position_parameter(), initial::speed_parameter(0)},
+                                .exact = {"sine-gordon", "double-sine-gordon", "phi4"},
+                                .approximate = {"sine-gordon-impurity"},
+                                .place = Place::line,
+                                .build = [](const StateBuild& build) { return initial::any_kink(build, true); },
+                                .width = initial::kink_width,
+                                .sources = {"perring-skyrme-1962"}};
 
 }  // namespace delf

@@ -112,15 +112,15 @@ std::vector<Parameter> kink_gas_parameters() {
 
 extern const StateEntry kink_gas_state;
 const StateEntry kink_gas_state{
-    "kink-gas",
-    "n kinks and antikinks in turn, f(s) and f(-s), s = gamma (x - x0 - v t), at places and speeds drawn from run.seed",
-    initial::kink_gas_parameters(),
-    {},
-    {"sine-gordon", "sine-gordon-impurity", "phi4", "double-sine-gordon"},
-    Place::line,
-    initial::kink_gas,
-    false,
-    {},
-    initial::kink_gas_width};
+    .name = "kink-gas",
+    .formula =
+        "n kinks and antikinks in turn, f(s) and f(-s), s = gamma (x - x0 - v t), at places and speeds drawn from run.seed",
+    .parameters = initial::kink_gas_parameters(),
+    .exact = {},
+    .approximate = {"sine-gordon", "sine-gordon-impurity", "phi4", "double-sine-gordon"},
+    .place = Place::line,
+    .build = initial::kink_gas,
+    .width = initial::kink_gas_width,
+    .sources = {"delf"}};
 
 }  // namespace delf

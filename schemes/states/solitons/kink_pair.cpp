@@ -155,29 +155,28 @@ std::vector<Parameter> pair_parameters() {
 
 extern const StateEntry kink_antikink_state;
 const StateEntry kink_antikink_state{
-    "kink-antikink",
-    "4 atan(sinh(gamma m (v t - d/2))/(v cosh(gamma m (x - x0)))); phi4, double-sine-gordon: "
-    "f(gamma (s + d/2 - v t)) + f(-gamma (s - d/2 + v t)) - f(inf), f their kink",
-    initial::pair_parameters(),
-    {"sine-gordon"},
-    {"sine-gordon-impurity", "phi4", "double-sine-gordon"},
-    Place::line,
-    initial::kink_antikink,
-    false,
-    {},
-    initial::pair_width};
+    .name = "kink-antikink",
+    .formula =
+        "4 atan(sinh(gamma m (v t - d/2))/(v cosh(gamma m (x - x0)))); phi4, double-sine-gordon: "
+        "f(gamma (s + d/2 - v t)) + f(-gamma (s - d/2 + v t)) - f(inf), f their kink",
+    .parameters = initial::pair_parameters(),
+    .exact = {"sine-gordon"},
+    .approximate = {"sine-gordon-impurity", "phi4", "double-sine-gordon"},
+    .place = Place::line,
+    .build = initial::kink_antikink,
+    .width = initial::pair_width,
+    .sources = {"perring-skyrme-1962"}};
 
 extern const StateEntry kink_kink_state;
 const StateEntry kink_kink_state{
-    "kink-kink",
-    "4 atan(v sinh(gamma m (x - x0))/cosh(gamma m (v t - d/2)))",
-    initial::pair_parameters(),
-    {"sine-gordon"},
-    {"sine-gordon-impurity"},
-    Place::line,
-    [](const StateBuild& build) { return initial::kink_pair<initial::KinkKink>(build, 2); },
-    false,
-    {},
-    initial::pair_width};
+    .name = "kink-kink",
+    .formula = "4 atan(v sinh(gamma m (x - x0))/cosh(gamma m (v t - d/2)))",
+    .parameters = initial::pair_parameters(),
+    .exact = {"sine-gordon"},
+    .approximate = {"sine-gordon-impurity"},
+    .place = Place::line,
+    .build = [](const StateBuild& build) { return initial::kink_pair<initial::KinkKink>(build, 2); },
+    .width = initial::pair_width,
+    .sources = {"perring-skyrme-1962"}};
 
 }  // namespace delf

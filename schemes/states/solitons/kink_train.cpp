@@ -68,17 +68,14 @@ Parameter speed() {
 
 extern const StateEntry kink_train_state;
 const StateEntry kink_train_state{
-    "kink-train",
-    "pi + 2 am(2 K (x - x0 - v t)/l; kappa), l = L/|winding|, m l = 2 kappa K sqrt(1 - v^2)",
-    {initial::position_parameter(),
-     initial::speed(),
-     initial::epsilon_parameter()},
-    {"sine-gordon"},
-    {},
-    Place::circle,
-    initial::kink_train,
-    false,
-    {},
-    [](const StateBuild& build) { return initial::train_profile(build).width(); }};
+    .name = "kink-train",
+    .formula = "pi + 2 am(2 K (x - x0 - v t)/l; kappa), l = L/|winding|, m l = 2 kappa K sqrt(1 - v^2)",
+    .parameters = {initial::position_parameter(), initial::speed(), initial::epsilon_parameter()},
+    .exact = {"sine-gordon"},
+    .approximate = {},
+    .place = Place::circle,
+    .build = initial::kink_train,
+    .width = [](const StateBuild& build) { return initial::train_profile(build).width(); },
+    .sources = {"scott-chu-mclaughlin-1973", "dlmf"}};
 
 }  // namespace delf

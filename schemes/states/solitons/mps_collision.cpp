@@ -82,16 +82,16 @@ std::unique_ptr<State> mps_collision(const StateBuild& build) {
 
 extern const StateEntry mps_collision_state;
 const StateEntry mps_collision_state{
-    "mps-collision",
-    "phi~(x - c t) | 2 pi | 2 pi - phi~(x - 3L/4 + c t) on the first, middle two and last quarters of the circle, "
-    "phi~ = pi + 2 am(P (x - L/8)/(L/4); 1 - epsilon)",
-    {initial::epsilon_parameter()},
-    {},
-    {"sine-gordon"},
-    Place::circle,
-    initial::mps_collision,
-    false,
-    {},
-    [](const StateBuild& build) { return initial::collision_profile(build).width(); }};
+    .name = "mps-collision",
+    .formula =
+        "phi~(x - c t) | 2 pi | 2 pi - phi~(x - 3L/4 + c t) on the first, middle two and last quarters of the circle, "
+        "phi~ = pi + 2 am(P (x - L/8)/(L/4); 1 - epsilon)",
+    .parameters = {initial::epsilon_parameter()},
+    .exact = {},
+    .approximate = {"sine-gordon"},
+    .place = Place::circle,
+    .build = initial::mps_collision,
+    .width = [](const StateBuild& build) { return initial::collision_profile(build).width(); },
+    .sources = {"marsden-patrick-shkoller-1998"}};
 
 }  // namespace delf

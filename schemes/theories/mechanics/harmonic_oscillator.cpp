@@ -8,11 +8,13 @@ namespace delf {
 
 extern const TheoryEntry harmonic_oscillator_theory;
 const TheoryEntry harmonic_oscillator_theory{
-    "harmonic-oscillator",
-    "q_tt + m²q = 0",
-    {mass_parameter()},
-    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+    .name = "harmonic-oscillator",
+    .formula = "q_tt + m²q = 0",
+    .parameters = {mass_parameter()},
+    .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<HarmonicOscillator>>(HarmonicOscillator{p.get<double>("theory.mass")});
-    }};
+    },
+    .words = "the harmonic oscillator",
+    .sources = {"arnold-1989"}};
 
 }  // namespace delf

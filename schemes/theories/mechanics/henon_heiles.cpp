@@ -7,11 +7,13 @@
 namespace delf {
 
 extern const TheoryEntry henon_heiles_theory;
-const TheoryEntry henon_heiles_theory{"henon-heiles",
-                                      "q₁_tt + q₁ + 2q₁q₂ = 0, q₂_tt + q₂ + q₁² − q₂² = 0",
-                                      {},
-                                      [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
+const TheoryEntry henon_heiles_theory{.name = "henon-heiles",
+                                      .formula = "q₁_tt + q₁ + 2q₁q₂ = 0, q₂_tt + q₂ + q₁² − q₂² = 0",
+                                      .parameters = {},
+                                      .make = [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
                                         return std::make_unique<TheoryOf<HenonHeiles>>(HenonHeiles{});
-                                      }};
+                                      },
+                                      .words = "the Hénon–Heiles system",
+                                      .sources = {"henon-heiles-1964"}};
 
 }  // namespace delf

@@ -18,16 +18,20 @@ std::unique_ptr<FieldTheory> in_gauge() {
 
 extern const TheoryEntry lotka_volterra_theory;
 const TheoryEntry lotka_volterra_theory{
-    "lotka-volterra",
-    "q₁_t = q₁(q₂ − 2), q₂_t = q₂(1 − q₁)",
-    {{.key = "theory.gauge",
-      .fallback = std::string("full"),
-      .help = "theta, up to a total derivative: (q2 + log(q2)/q1, q1), (log(q2)/q1, 0), or half of the latter in each",
-      .choices = {"full", "x", "symmetric"}}},
-    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+    .name = "lotka-volterra",
+    .formula = "q₁_t = q₁(q₂ − 2), q₂_t = q₂(1 − q₁)",
+    .parameters =
+        {{.key = "theory.gauge",
+          .fallback = std::string("full"),
+          .help =
+              "theta, up to a total derivative: (q2 + log(q2)/q1, q1), (log(q2)/q1, 0), or half of the latter in each",
+          .choices = {"full", "x", "symmetric"}}},
+    .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       using enum LotkaVolterraGauge;
       const auto gauge = p.get<std::string>("theory.gauge");
       return gauge == "x" ? in_gauge<x>() : gauge == "symmetric" ? in_gauge<symmetric>() : in_gauge<full>();
-    }};
+    },
+    .words = "the Lotka–Volterra equations",
+    .sources = {"kraus-2017"}};
 
 }  // namespace delf

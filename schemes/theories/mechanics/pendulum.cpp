@@ -10,16 +10,18 @@ namespace delf {
 
 extern const TheoryEntry pendulum_theory;
 const TheoryEntry pendulum_theory{
-    "pendulum",
-    "q_tt + m² (g/L) sin q = 0",
-    {mass_parameter(),
-     {.key = "theory.gravity", .fallback = 1.0, .help = "g of a pendulum", .range = {.low = 0}},
-     {.key = "theory.arm", .fallback = 1.0, .help = "its length L", .range = {.low = 0, .open = true}}},
-    [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
+    .name = "pendulum",
+    .formula = "q_tt + m² (g/L) sin q = 0",
+    .parameters = {mass_parameter(),
+                   {.key = "theory.gravity", .fallback = 1.0, .help = "g of a pendulum", .range = {.low = 0}},
+                   {.key = "theory.arm", .fallback = 1.0, .help = "its length L", .range = {.low = 0, .open = true}}},
+    .make = [](const ParameterValues& p) -> std::unique_ptr<FieldTheory> {
       return std::make_unique<TheoryOf<Pendulum>>(Pendulum{
           p.get<double>("theory.mass") * std::sqrt(p.get<double>("theory.gravity") / p.get<double>("theory.arm"))});
     },
-    true,
-    0.0};
+    .angle = true,
+    .vacuum = 0.0,
+    .words = "the pendulum",
+    .sources = {"arnold-1989"}};
 
 }  // namespace delf

@@ -7,11 +7,14 @@
 namespace delf {
 
 extern const TheoryEntry solar_system_theory;
-const TheoryEntry solar_system_theory{"solar-system",
-                                      "q_i,tt = Σ_j G m_j (q_j − q_i)/|q_j − q_i|³: the Sun, Jupiter to Pluto",
-                                      {},
-                                      [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
-                                        return std::make_unique<TheoryOf<SolarSystem>>(SolarSystem{});
-                                      }};
+const TheoryEntry solar_system_theory{
+    .name = "solar-system",
+    .formula = "q_i,tt = Σ_j G m_j (q_j − q_i)/|q_j − q_i|³: the Sun, Jupiter to Pluto",
+    .parameters = {},
+    .make = [](const ParameterValues&) -> std::unique_ptr<FieldTheory> {
+      return std::make_unique<TheoryOf<SolarSystem>>(SolarSystem{});
+    },
+    .words = "the outer solar system",
+    .sources = {"hairer-lubich-wanner-2006"}};
 
 }  // namespace delf
