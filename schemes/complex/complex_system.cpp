@@ -32,7 +32,7 @@ std::vector<TablePoint::Entry> place_of(const TablePoint& point) {
   return mean;
 }
 
-/// Which values of a stencil feel each other, [i·size + m].
+/// Marks the pairs of values of a stencil that feel each other, [i·size + m].
 std::vector<char> coupled(const StencilTable& table, const BatchDensity& density, int size) {
   const int d = density.components();
   std::vector<char> all(at(size) * at(size), 0);

@@ -31,7 +31,7 @@ class RowLoop {
   void run(RunFiles&, Checkpoints&);
 
  protected:
-  /// Of a simulation that is there before the first row.
+  /// The simulation is there before the first row.
   RowLoop(const Scene&, Outcome&, const Simulation&, const WatchedRows&);
 
   /// True if there are rows to step from.

@@ -20,7 +20,7 @@ void measure_orders(const Scene&, int winding, std::vector<Measured> balances, s
 /// is given they are those of a run that begins there.
 void reverse_time(const Scene&, const MakeSimulation&, const std::vector<std::vector<double>>& first_rows,
                   double tolerance, Verdict&);
-/// The same, of the simulations of a scene on a lattice.
+/// Reverses the rows of a scene on a lattice.
 void reverse_time(const Scene&, int winding, const std::vector<std::vector<double>>& first_rows, double tolerance,
                   Verdict&);
 

@@ -21,7 +21,7 @@ void imply_rows(Settings&, const std::string& fields);
 /// `folder`. The exit code reports a failed check.
 ExitCode verify(const Scene&, const std::filesystem::path& folder, const std::optional<std::string>& fields,
                 const std::vector<std::string>& nearby);
-/// The same of a scene on a mesh.
+/// Checks the rows of a scene on a mesh, or those of a file, and writes verify.json.
 ExitCode verify(const ComplexScene&, const std::filesystem::path& folder, const std::optional<std::string>& fields,
                 const std::vector<std::string>& nearby);
 
