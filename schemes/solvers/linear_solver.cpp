@@ -47,7 +47,6 @@ class ScalarSolver final : public LinearSolver {
   ScalarSolver(const RowLayout& layout, double diagonal) : layout_(&layout), inverse_(1 / diagonal) {}
   void solve(double* const*) const override {}
   std::unique_ptr<Sweeps> sweeps(int) const override { return std::make_unique<Through>(*layout_); }
-  bool is_a_number() const override { return true; }
   double right_side_scale(int) const override { return inverse_; }
   std::size_t bytes() const override { return 0; }
   std::string name() const override { return "division by one number"; }

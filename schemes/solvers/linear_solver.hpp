@@ -41,8 +41,6 @@ class LinearSolver {
   virtual double right_side_scale(int /*component*/) const { return 1; }
   /// Null where it cannot be done by sweeps.
   virtual std::unique_ptr<Sweeps> sweeps(int /*component*/) const { return nullptr; }
-  /// A is one number: w is the right side times right_side_scale().
-  virtual bool is_a_number() const { return false; }
   virtual std::size_t bytes() const = 0;
   virtual std::string name() const = 0;
 };
