@@ -217,27 +217,26 @@ KickStepper::Kick KickStepper::Parts::kick(std::initializer_list<int> of) const 
   for (int pack = 0; pack < fields * padded; pack += lanes) {
     kick.first.push_back(static_cast<std::int32_t>(kick.value.size()));
     const auto begin = next;
-    std::map<int, int> rows_at;  // rows of the pack with an entry so far from their own place
-    for (; next != K.end() && next->row < pack + lanes; ++next) ++rows_at[next->column - next->row];
+    // How many rows of the pack have an entry so far from their own place; then the entry that they share.
+    std::map<int, int> entry_at;
+    for (; next != K.end() && next->row < pack + lanes; ++next) ++entry_at[next->column - next->row];
     const auto add = [&](int column) {
       kick.column.push_back(column), kick.value.emplace_back(0.0);
       return static_cast<int>(kick.value.size()) - 1;
     };
     // Rows without an entry there read a value and take nothing of it.
-    std::map<int, int> entry_at;
-    for (const auto& [apart, rows] : rows_at)
-      if (2 * rows >= lanes && pack + apart >= 0 && pack + apart + lanes <= fields * padded)
-        entry_at.emplace(apart, add(pack + apart));
-    const auto first_listed = static_cast<int>(kick.value.size());
-    std::array<int, lanes> used{};
+    for (auto& [apart, at] : entry_at) {
+      const bool shared = 2 * at >= lanes && pack + apart >= 0 && pack + apart + lanes <= fields * padded;
+      at = shared ? add(pack + apart) : -1;
+    }
+    std::array<int, lanes> own;
+    own.fill(static_cast<int>(kick.value.size()));
     for (auto entry = begin; entry != next; ++entry) {
-      const auto found = entry_at.find(entry->column - entry->row);
-      const int lane = entry->row - pack, e = found != entry_at.end() ? found->second : first_listed + used[lane]++;
-      if (e == static_cast<int>(kick.value.size())) {
-        add(~static_cast<int>(kick.listed.size()));
-        kick.listed.insert(kick.listed.end(), at(lanes), pack);
-      }
-      if (found == entry_at.end()) kick.listed[~kick.column[e] + lane] = entry->column;
+      const int lane = entry->row - pack, shared = entry_at[entry->column - entry->row],
+                e = shared < 0 ? own[lane]++ : shared;
+      if (e == static_cast<int>(kick.value.size()))
+        add(~static_cast<int>(kick.listed.size())), kick.listed.insert(kick.listed.end(), at(lanes), pack);
+      if (shared < 0) kick.listed[~kick.column[e] + lane] = entry->column;
       numbers(kick.value)[e * lanes + lane] = entry->value;
     }
   }

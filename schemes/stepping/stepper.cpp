@@ -18,12 +18,9 @@ namespace {
 std::unique_ptr<StepMethod> choose(const LatticeSystem& system, const SolvePlan& plan, StepOptions options) {
   if (options.own_stepper) return options.own_stepper(system);
   options.tolerance = std::max(options.tolerance, smallest_tolerance);
-  if (options.steps_vary) {
+  if (options.steps_vary || system.lattice().space() == Space::point)
     if (auto stepper = KickStepper::make(system, plan, options)) return stepper;
-    return std::make_unique<SlabStepper>(system, plan, options);
-  }
-  if (system.lattice().space() == Space::point)
-    if (auto stepper = KickStepper::make(system, plan, options)) return stepper;
+  if (options.steps_vary) return std::make_unique<SlabStepper>(system, plan, options);
   const bool has_own_walls = std::ranges::any_of(system.families(), [](const auto& family) {
     const Placement at = family->pattern().placement;
     return (at == Placement::left_wall || at == Placement::right_wall) && !family->made_of();

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include "jets/expressions/expression.hpp"
-#include "lattice/space/mesh_refinement.hpp"
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
+#include "lattice/space/mesh_refinement.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/complex/refined_piece.hpp"
 #include "tools/complex/mesh_text.hpp"
@@ -93,12 +95,30 @@ std::variant<Mesh, StencilList> named_mesh(const std::string& name, const fs::pa
   return mesh;
 }
 
+namespace {
+
+/// The points of a coarser mesh come first, in their order, as refined() has them.
+Mesh in_order_of(const Mesh& coarse, Mesh fine) {
+  std::map<Mesh::Point, std::int32_t> number;
+  for (const Mesh* mesh : {&coarse, static_cast<const Mesh*>(&fine)})
+    for (const Mesh::Point& p : mesh->points) number.emplace(p, static_cast<std::int32_t>(number.size()));
+  for (std::int32_t& vertex : fine.vertices) vertex = number[fine.points[at(vertex)]];
+  for (const auto& [point, n] : number) fine.points[at(n)] = point;
+  return fine;
+}
+
+}  // namespace
+
 Mesh finer_mesh(const std::string& name, Mesh mesh, int halvings) {
   constexpr std::string_view sphere = "icosahedron:";
   fs::path none;
-  if (halvings > 0 && name.starts_with(sphere))
-    return std::get<Mesh>(
-        named_mesh(fmt::format("{}{}", sphere, number_of(name.substr(sphere.size()), key) + halvings), {}, none));
+  if (name.starts_with(sphere)) {
+    for (int finer = 1; finer <= halvings; ++finer)
+      mesh = in_order_of(
+          mesh, std::get<Mesh>(named_mesh(
+                    fmt::format("{}{}", sphere, number_of(name.substr(sphere.size()), key) + finer), {}, none)));
+    return mesh;
+  }
   constexpr int most = 10'000'000;
   for (; halvings > 0; --halvings) {
     if (mesh.cells() > most / 4)
