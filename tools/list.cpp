@@ -59,12 +59,8 @@ struct Kind {
   const char* name;
   void (*print)();
 };
-constexpr Kind kinds[] = {{"theories", print_theories},
-                          {"stencils", print_stencils},
-                          {"schemes", print_schemes},
-                          {"states", print_states},
-                          {"scenes", print_scenes},
-                          {"results", list_results}};
+constexpr Kind kinds[] = {{"theories", print_theories}, {"stencils", print_stencils}, {"schemes", print_schemes},
+                          {"states", print_states},     {"scenes", print_scenes},     {"results", list_results}};
 
 }  // namespace
 

@@ -71,6 +71,9 @@ class ResultsFile {
   void begin(const std::string& id) {
     if (std::ranges::find(all_, id, &PublishedResult::id) != all_.end())
       refuse(number_, fmt::format("[{}]: is there already; choose another id", id));
+    const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.'; };
+    if (id.empty() || id.front() == '.' || !std::ranges::all_of(id, plain))
+      refuse(number_, fmt::format("[{}]: an id names a folder; write it with letters, digits, - and .", id));
     PublishedResult result = paper_;
     result.id = id, result.file = file_, result.line = number_;
     all_.push_back(result);
@@ -149,7 +152,6 @@ std::vector<PublishedResult> chosen_results(const std::vector<std::string>& name
   const auto wanted = [&](const PublishedResult& r) { return slow == "on" || r.slow == (slow == "only"); };
   if (names.empty()) std::ranges::copy_if(all, std::back_inserter(chosen), wanted);
   for (const std::string& name : names) {
-    const auto before = chosen.size();
     bool known = false;
     for (const PublishedResult& r : all) {
       if (r.id != name && r.paper != name) continue;
@@ -157,8 +159,7 @@ std::vector<PublishedResult> chosen_results(const std::vector<std::string>& name
       const bool twice = std::ranges::find(chosen, r.id, &PublishedResult::id) != chosen.end();
       if (!twice && (r.id == name || wanted(r))) chosen.push_back(r);
     }
-    if (known && (before != chosen.size() || names.size() > 1 || slow == "only")) continue;
-    if (known) throw BadScene(fmt::format("command line: {}: all its results are slow; add --reproduce.slow=on", name));
+    if (known) continue;
     std::vector<std::string> ids;
     for (const PublishedResult& r : all) ids.push_back(r.id), ids.push_back(r.paper);
     const auto close = nearest(name, ids);
@@ -166,6 +167,10 @@ std::vector<PublishedResult> chosen_results(const std::vector<std::string>& name
         fmt::format("command line: reproduce {}: no such result{}", name,
                     close ? fmt::format("; did you mean {}?", *close) : "; `delf list results` has them all"));
   }
+  if (chosen.empty())
+    throw BadScene(fmt::format("command line: reproduce{}{}: all results there are {}", names.empty() ? "" : " ",
+                               fmt::join(names, " "),
+                               slow == "only" ? "fast; leave out --reproduce.slow" : "slow; add --reproduce.slow=on"));
   return chosen;
 }
 

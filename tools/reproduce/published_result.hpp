@@ -6,8 +6,8 @@
 
 namespace delf {
 
-/// A published number or equation, and the command that computes it here. Every member is text of a file of results; see
-/// tools/scenes/results/README.md.
+/// A published number or equation, and the command that computes it here. Members are keys of a file of results, as
+/// tools/reproduce/README.md has them.
 struct PublishedResult {
   std::string id, title;
   std::string paper, reference, doi, where;  ///< paper: the file's name; where: a figure, an equation, a section
@@ -27,8 +27,8 @@ struct PublishedResult {
 /// what is none.
 std::vector<PublishedResult> published_results();
 
-/// Those of the ids, or of the papers, that are named; of no name all that are `wanted`: fast ones, slow ones or both.
-/// Throws BadScene, with the nearest name, for one that is unknown.
+/// Those of the ids, or of the papers, that are named; without names all, as `slow` says: off, on or only. Throws BadScene,
+/// with the nearest name, for one that is unknown.
 std::vector<PublishedResult> chosen_results(const std::vector<std::string>& names, const std::string& slow);
 
 }  // namespace delf

@@ -131,6 +131,8 @@ TEST_CASE("ids that are none, and files of results that are none, are refused in
         {"[a]\nprintd = 1\n", "did you mean printed?"},
         {"[a]\n[a]\n", "is there already"},
         {"[a]\nlike = b\n", "no result above"},
+        {"[../a]\n", "an id names a folder"},
+        {entry("a", "slow = yes\ncommand = run kink\nnumber = sites\nprinted = < 1\n"), "add --reproduce.slow=on"},
         {"nonsense\n", "neither an [id] nor key = value"}}) {
     const Ran ran = reproduced(folder, head + text);
     INFO(ran.err);
