@@ -12,6 +12,7 @@
 
 #include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "tools/cite/cite.hpp"
 #include "tools/complex/complex_commands.hpp"
 #include "tools/convergence/convergence.hpp"
 #include "tools/files/plain_rows.hpp"
@@ -19,8 +20,8 @@
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/page/page.hpp"
-#include "tools/page/result_folder.hpp"
 #include "tools/plan.hpp"
+#include "tools/results/result_folder.hpp"
 #include "tools/resume.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/run/kept_results.hpp"
@@ -189,6 +190,13 @@ ExitCode carry_out_report(const Arguments& arguments) {
   if (arguments.words.size() < 2)
     throw BadScene("command line: report what? Name a folder of results, such as `delf report results/collision`");
   return write_page({arguments.words.begin() + 1, arguments.words.end()}, arguments.out);
+}
+
+ExitCode carry_out_cite(const Arguments& arguments) {
+  if (arguments.words.size() < 2)
+    throw BadScene(
+        "command line: cite what? Name a scene, or a folder of results, such as `delf cite results/collision`");
+  return cite(only_word(arguments, nullptr), arguments.keys, arguments.out);
 }
 
 ExitCode carry_out_plan(const Arguments& arguments) {
@@ -409,6 +417,19 @@ const std::vector<Command>& table() {
        "has no script, loads nothing, and takes a million bytes at most. output.report = on makes it with the results of a\n"
        "command.",
        false, carry_out_report},
+      {"cite", "delf cite DIR|SCENE [--out DIR] [--KEY=VALUE ...]",
+       "the methods section of a paper, with its references",
+       "Prints a methods section for a paper: the theory with its field equation and density, the discretisation with its "
+       "order\n"
+       "and what it conserves, the discrete equations, lattice and step with the limit of linear theory, the start, the "
+       "solution\n"
+       "of a step; of a folder of results the numbers of its run, and of its checks, orders, limits or study; version and "
+       "machine.\n"
+       "Every source that these rest on is cited, and is an entry of references.bib with the record that it was checked "
+       "against.\n\n"
+       "  --out DIR   writes methods.tex, methods.md and references.bib there instead\n\nThe keys of its own section; for a "
+       "scene all others are those of `delf help run`:",
+       true, carry_out_cite, "cite"},
       {"list", "delf list [theories|stencils|schemes|states|scenes]", "what there is",
        "Lists what a scene can name, with formulas; everything if no kind is given.", false, carry_out_list},
       {"help", "delf help [COMMAND]", "this, or the details of a command", "Explains a command.", false,

@@ -12,10 +12,10 @@
 
 namespace delf {
 
-/// A folder of results, as a page reads it: whatever is there, of a run that ended, failed, or was killed.
+/// A folder of results: whatever is there, of a run that ended, failed, or was killed.
 struct ResultFolder {
-  /// Throws BadInput for what is no folder, or holds no results.
-  explicit ResultFolder(const std::filesystem::path&);
+  /// Throws BadInput, in the name of a command, for what is no folder, or holds no results.
+  ResultFolder(const std::filesystem::path&, const char* command);
 
   struct File {
     std::string name;  ///< in the folder
@@ -32,9 +32,9 @@ struct ResultFolder {
   std::map<std::string, std::string> keys;
   std::vector<std::string> series_names;  ///< columns of series.csv
   std::vector<std::vector<double>> series;
-  std::vector<File> files;
-  std::size_t further_files = 0;  ///< not among these: there are too many
-  std::vector<std::string> figures;
+  std::vector<File> files;           ///< of list_files()
+  std::size_t further_files = 0;     ///< not among these: there are too many
+  std::vector<std::string> figures;  ///< of list_files()
   std::vector<std::string> missing;  ///< in words
 
   /// A result by the name of its file; null if it is not there.
@@ -44,10 +44,11 @@ struct ResultFolder {
   /// A column of series.csv; null if it is not there.
   const std::vector<double>* column(const std::string& name) const;
   bool has_file(const std::string& name) const;
+  /// Lists all files, with the sums of what they hold, and says in `missing` what a page has not.
+  void list_files();
 
  private:
   void read_series();
-  void list_files();
 };
 
 /// A value of a result, if it is there and of this type.
