@@ -62,7 +62,8 @@ CitedWork delf_itself() {
 /// TeX's markup of a field as text: {PDE}s, --, ``, $\varphi^4$.
 std::string without_tex(std::string text) {
   static const std::pair<std::string, std::string> marks[] = {
-      {"--", "–"}, {"``", "“"}, {"''", "”"}, {"\\varphi^4", "φ⁴"}, {"\\varphi^6", "φ⁶"}, {"^{5/2}", "^(5/2)"}};
+      {"--", "–"},  {"``", "“"}, {"''", "”"}, {"\\varphi", "φ"}, {"\\lambda", "λ"},   {"\\log", "log "},
+      {"\\,", " "}, {"^4", "⁴"}, {"^2", "²"}, {"_2", "₂"},       {"^{5/2}", "^(5/2)"}};
   for (const auto& [mark, sign] : marks)
     for (std::size_t at = 0; (at = text.find(mark, at)) != text.npos; at += sign.size())
       text.replace(at, mark.size(), sign);
