@@ -12,6 +12,7 @@
 
 #include "schemes/methods/energies.hpp"
 #include "schemes/methods/method_registry.hpp"
+#include "tools/cite/cite.hpp"
 #include "tools/command_line.hpp"
 #include "tools/complex/mesh_run.hpp"
 #include "tools/convergence/convergence.hpp"
@@ -21,9 +22,9 @@
 #include "tools/help.hpp"
 #include "tools/list.hpp"
 #include "tools/page/page.hpp"
-#include "tools/page/result_folder.hpp"
 #include "tools/plan.hpp"
 #include "tools/reproduce/reproduce.hpp"
+#include "tools/results/result_folder.hpp"
 #include "tools/resume.hpp"
 #include "tools/rows/initial_rows.hpp"
 #include "tools/run/kept_results.hpp"
@@ -247,6 +248,13 @@ ExitCode carry_out_report(const Arguments& arguments) {
 
 ExitCode plan_modified(const ComplexScene&, int, bool) {
   throw BadScene("command line: --modified: is for lattices, and this scene is on a mesh; leave it out");
+}
+
+ExitCode carry_out_cite(const Arguments& arguments) {
+  if (arguments.words.size() < 2)
+    throw BadScene(
+        "command line: cite what? Name a scene, or a folder of results, such as `delf cite results/collision`");
+  return cite(only_word(arguments, nullptr), arguments.keys, arguments.out);
 }
 
 ExitCode carry_out_plan(const Arguments& arguments) {
@@ -486,6 +494,19 @@ const std::vector<Command>& table() {
        "has no script, loads nothing, and takes a million bytes at most. output.report = on makes it with the results of a\n"
        "command.",
        false, carry_out_report},
+      {"cite", "delf cite DIR|SCENE [--out DIR] [--KEY=VALUE ...]",
+       "the methods section of a paper, with its references",
+       "Prints a methods section for a paper: the theory with its field equation and density, the discretisation with its "
+       "order\n"
+       "and what it conserves, the discrete equations, lattice and step with the limit of linear theory, the start, the "
+       "solution\n"
+       "of a step; of a folder of results the numbers of its run, and of its checks, orders, limits or study; version and "
+       "machine.\n"
+       "Every source that these rest on is cited, and is an entry of references.bib with the record that it was checked "
+       "against.\n\n"
+       "  --out DIR   writes methods.tex, methods.md and references.bib there instead\n\nThe keys of its own section; for a "
+       "scene all others are those of `delf help run`:",
+       true, carry_out_cite, "cite"},
       {"film", "delf film DIR [--film.seconds=S]", "a film of recorded rows, beside their energy",
        "Makes a film of the recorded rows of the folder DIR, beside the energy error: curves over a line, maps of a mesh, the\n"
        "orbit of two or three coordinates, else coordinates over time. Axes are the same in all frames. It is DIR/film.mp4,\n"

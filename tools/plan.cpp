@@ -139,7 +139,7 @@ ExitCode plan_modified(const Scene& scene, int order, bool latex) {
     const Simulation simulation = build(scene, initial.winding());
     try {
       ModifiedLagrangian modified = modified_lagrangian(scene.problem, simulation, order);
-      const SymbolicDensity& density = *text_of(scene.problem, simulation);
+      const SymbolicDensity& density = *text_of(scene.problem, simulation.theory());
       if (latex) {
         fmt::print("{}", modified_in_latex(modified, density));
         return ExitCode::done;

@@ -25,6 +25,6 @@ const TheoryEntry sine_gordon_impurity_theory{
     },
     .angle = true,
     .words = "the sine-Gordon equation with an impurity",
-    .sources = {"kivshar-fei-vazquez-1991"}};
+    .sources = {"fei-kivshar-vazquez-1992"}};
 
 }  // namespace delf

@@ -14,7 +14,7 @@ schemes="$stepping jets/expressions schemes schemes/theories schemes/methods sch
 results="$schemes tools/report tools/files tools/figures tools/scene tools/outcome"
 runs="$results tools/rows tools/measure tools/compare tools/warnings"
 commands="$runs tools/run tools/diagnosis tools/verify tools/complex tools/convergence tools/sweep tools/stability
-  tools/workprecision tools/page tools/film tools/reproduce"
+  tools/workprecision tools/results tools/cite tools/page tools/film tools/reproduce"
 
 declare -A may_include=(
   [lattice]='lattice/space'  # a mesh is the space of a lattice
@@ -56,7 +56,9 @@ declare -A may_include=(
   [tools/sweep]="$runs tools/run tools/complex"
   [tools/stability]="$runs tools/complex"
   [tools/workprecision]="$runs tools/peers"
-  [tools/page]="$runs tools/complex"
+  [tools/results]="$results"
+  [tools/cite]="$runs tools/complex tools/results tools/peers"  # what a comparison cites
+  [tools/page]="$runs tools/complex tools/results tools/cite"
   [tools/reproduce]="$runs tools/page"
   [tools/film]="$runs tools/complex"
   [tools/peers]="$schemes"

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "tools/page/result_folder.hpp"
+#include "tools/results/result_folder.hpp"
 
 namespace delf {
 

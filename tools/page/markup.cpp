@@ -5,8 +5,8 @@
 
 #include <cstdlib>
 
-#include "tools/page/result_folder.hpp"
 #include "tools/page/style.hpp"
+#include "tools/results/result_folder.hpp"
 
 namespace delf {
 namespace {

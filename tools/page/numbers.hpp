@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/page/result_folder.hpp"
+#include "tools/results/result_folder.hpp"
 
 namespace delf {
 

@@ -11,16 +11,19 @@
 #include <limits>
 #include <set>
 
+#include "tools/cite/citation.hpp"
+#include "tools/cite/cite.hpp"
+#include "tools/cite/methods_text.hpp"
+#include "tools/cite/references.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/page/captions.hpp"
-#include "tools/page/citation.hpp"
 #include "tools/page/markup.hpp"
 #include "tools/page/numbers.hpp"
 #include "tools/page/page_figures.hpp"
-#include "tools/page/same_scene.hpp"
 #include "tools/page/solved.hpp"
 #include "tools/page/verdict.hpp"
 #include "tools/report/machine.hpp"
+#include "tools/results/same_scene.hpp"
 
 namespace delf {
 
@@ -187,6 +190,27 @@ std::string files_section(const ResultFolder& folder) {
   return html + (folder.missing.empty() ? "" : "<h3>Missing</h3>\n" + list(folder.missing));
 }
 
+/// The references that the scenes of the folders rest on.
+std::string references_section(const std::vector<ResultFolder>& folders) {
+  constexpr int most_sites = 200000;  // of which a simulation is made in no time
+  std::vector<std::string> keys, lines;
+  for (const ResultFolder& folder : folders) {
+    try {
+      if (folder.scene.empty() || number_in(folder.result("summary"), "sites").value_or(0) > most_sites) continue;
+      const AnyScene scene = read_any_scene(read_settings(folder.scene_file, {}));
+      for (const std::string& key : std::visit([&](const auto& s) { return methods_text(s, &folder); }, scene).cited())
+        if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+    } catch (const std::exception&) {  // whose equations are not shown either, with the reason
+    }
+  }
+  for (const std::string& key : keys)
+    if (const CitedWork* reference = find_reference(key)) lines.push_back(in_words(*reference));
+  if (lines.empty()) return {};
+  return paragraph(
+             "The results rest on these publications and programs; `delf cite` writes a methods section with them:") +
+         list(lines) + details("references.bib", code_block("references.bib", bibliography_of(keys)));
+}
+
 /// The keys in which the scenes of several folders differ.
 std::string differences(const std::vector<ResultFolder>& folders) {
   PageTable t{"Keys that differ", {"key"}, {}};
@@ -292,7 +316,7 @@ std::string page_with(const std::vector<ResultFolder>& folders, const std::vecto
   parts.push_back(
       {"cite", "Citation",
        paragraph("Cite the program, and the paper whose construction it generalises, as CITATION.cff says:") +
-           code_block("CITATION.cff", citation)});
+           code_block("CITATION.cff", citation) + references_section(folders)});
   return document(title, fmt::format("<main>\n<h1>{}</h1>\n{}{}</main>\n", escaped(title), lead, with_contents(parts)));
 }
 
@@ -309,7 +333,8 @@ std::string url_of(const fs::path& path) {
 }  // namespace
 
 std::string page_of(const std::vector<fs::path>& paths, const fs::path& place) {
-  const std::vector<ResultFolder> folders(paths.begin(), paths.end());
+  std::vector<ResultFolder> folders;
+  for (const fs::path& path : paths) folders.emplace_back(path, "report").list_files();
   constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
   const auto figures_of = [&](std::size_t most) {
     auto figures = page_figures(folders, most);

@@ -83,7 +83,7 @@ SolvedProblem solved_problem(const ResultFolder& folder) {
         throw BadScene(fmt::format("`delf plan` prints the equations of more than {} sites", most_sites));
       const Simulation simulation =
           build(read, static_cast<int>(number_in(folder.result("summary"), "winding").value_or(0)));
-      if (const auto equations = equations_in_mathml(read.problem, simulation))
+      if (const auto equations = equations_in(expressions::Notation::mathml, read.problem, simulation))
         solved.what += in_mathml(*equations, on_point);
       else solved.what += paragraph("The theory is compiled, and its density has no text to be printed.");
       waves = waves_in_words(read, simulation);

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "tools/page/numbers.hpp"
-#include "tools/page/same_scene.hpp"
+#include "tools/results/same_scene.hpp"
 
 namespace delf {
 namespace {

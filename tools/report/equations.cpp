@@ -59,10 +59,34 @@ std::string displayed_in_mathml(const std::string& formula) {
   return fmt::format("<math display=\"block\"><mtable displaystyle=\"true\">{}</mtable></math>", rows);
 }
 
+/// A formula of its own in a notation.
+std::string displayed_in(Notation notation, const std::string& formula) {
+  constexpr std::size_t indent = 4;
+  return notation == Notation::latex    ? displayed(formula)
+         : notation == Notation::mathml ? displayed_in_mathml(formula)
+                                        : std::string(indent, ' ') + broken(formula, indent) + "\n";
+}
+
+std::optional<DisplayedEquations> equations_on(const StencilTable* table, Notation notation, const Problem& p,
+                                               const FieldTheory& theory) {
+  const auto density = text_of(p, theory);
+  if (!density) return std::nullopt;
+  const char* const is = notation == Notation::latex    ? "\\ell = "
+                         : notation == Notation::mathml ? "<mi>ℓ</mi><mo>=</mo>"
+                                                        : "l = ";
+  DisplayedEquations shown{displayed_in(notation, is + density_formula(*density, notation)), {}, {}};
+  for (const std::string& equation : field_equations(*density, notation))
+    shown.of_fields.push_back(displayed_in(notation, equation));
+  if (table)
+    for (const std::string& equation : discrete_field_equations(*density, *table, notation))
+      shown.discrete.push_back(displayed_in(notation, equation));
+  return shown;
+}
+
 }  // namespace
 
-std::shared_ptr<const SymbolicDensity> text_of(const Problem& p, const Simulation& simulation) {
-  const std::shared_ptr<const BatchDensity>& density = simulation.theory().shared_density();
+std::shared_ptr<const SymbolicDensity> text_of(const Problem& p, const FieldTheory& theory) {
+  const std::shared_ptr<const BatchDensity>& density = theory.shared_density();
   if (const SymbolicDensity* own = density->formula()) return {density, own};
   return text_of(p.theory, p.parameters);
 }
@@ -102,7 +126,7 @@ std::string displayed(const std::string& formula) {
 
 std::string equations_in_words(const Problem& p, const Simulation& simulation) {
   constexpr std::size_t indent = 13;
-  const auto density = text_of(p, simulation);
+  const auto density = text_of(p, simulation.theory());
   const bool is_compiled = density.get() != &simulation.theory().density();
   const StencilTable* table = table_of(p, simulation);
   std::string text;
@@ -130,32 +154,22 @@ std::string equations_in_words(const Problem& p, const Simulation& simulation) {
 }
 
 std::string equations_in_latex(const Problem& p, const Simulation& simulation) {
-  const auto density = text_of(p, simulation);
-  if (!density)
+  const auto equations = equations_in(Notation::latex, p, simulation);
+  if (!equations)
     throw BadInput("theory.name",
                    fmt::format("theory.name = {}: is compiled, and has no formulas to print; write it as "
                                "theory.density for --latex",
                                p.theory));
-  std::string text;
-  const auto add = [&](const std::string& formula) { text += displayed(formula); };
-  add("\\ell = " + density_formula(*density, Notation::latex));
-  for (const std::string& equation : field_equations(*density, Notation::latex)) add(equation);
-  if (const StencilTable* table = table_of(p, simulation))
-    for (const std::string& equation : discrete_field_equations(*density, *table, Notation::latex)) add(equation);
-  return text;
+  return fmt::format("{}{}{}", equations->density, fmt::join(equations->of_fields, ""),
+                     fmt::join(equations->discrete, ""));
 }
 
-std::optional<DisplayedEquations> equations_in_mathml(const Problem& p, const Simulation& simulation) {
-  const auto density = text_of(p, simulation);
-  if (!density) return std::nullopt;
-  DisplayedEquations shown{
-      displayed_in_mathml("<mi>ℓ</mi><mo>=</mo>" + density_formula(*density, Notation::mathml)), {}, {}};
-  for (const std::string& equation : field_equations(*density, Notation::mathml))
-    shown.of_fields.push_back(displayed_in_mathml(equation));
-  if (const StencilTable* table = table_of(p, simulation))
-    for (const std::string& equation : discrete_field_equations(*density, *table, Notation::mathml))
-      shown.discrete.push_back(displayed_in_mathml(equation));
-  return shown;
+std::optional<DisplayedEquations> equations_in(Notation notation, const Problem& p, const Simulation& simulation) {
+  return equations_on(table_of(p, simulation), notation, p, simulation.theory());
+}
+
+std::optional<DisplayedEquations> equations_in(Notation notation, const Problem& p, const FieldTheory& theory) {
+  return equations_on(nullptr, notation, p, theory);
 }
 
 }  // namespace delf

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "jets/expressions/expression.hpp"
+#include "jets/expressions/print.hpp"
 #include "schemes/simulation.hpp"
 
 namespace delf {
@@ -18,7 +19,7 @@ std::string equations_in_words(const Problem&, const Simulation&);
 std::string equations_in_latex(const Problem&, const Simulation&);
 
 /// The density as text: that of the scene, or the text of a built-in theory; null if there is none.
-std::shared_ptr<const SymbolicDensity> text_of(const Problem&, const Simulation&);
+std::shared_ptr<const SymbolicDensity> text_of(const Problem&, const FieldTheory&);
 /// A sum broken between its terms into lines of at most `width` letters, where terms are that short.
 std::vector<std::string> lines_of_terms(const std::string& sum, std::size_t width);
 /// A sum of terms as text for a terminal, in lines of its width.
@@ -26,12 +27,14 @@ std::string broken(const std::string& sum, std::size_t indent);
 /// An equation of its own in LaTeX, in lines that fit on a page.
 std::string displayed(const std::string& formula);
 
-/// The equations for a page: each a displayed formula in MathML.
+/// The equations, each a displayed formula: in LaTeX between \[ and \], in MathML an element, in plain notation as text.
 struct DisplayedEquations {
   std::string density;
   std::vector<std::string> of_fields, discrete;  ///< none of a method without a stencil
 };
 /// Nothing for a theory that has no text.
-std::optional<DisplayedEquations> equations_in_mathml(const Problem&, const Simulation&);
+std::optional<DisplayedEquations> equations_in(expressions::Notation, const Problem&, const Simulation&);
+/// Those of the theory alone.
+std::optional<DisplayedEquations> equations_in(expressions::Notation, const Problem&, const FieldTheory&);
 
 }  // namespace delf

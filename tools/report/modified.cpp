@@ -93,7 +93,7 @@ ModifiedLagrangian modified_lagrangian(const Problem& p, const Simulation& simul
     refuse("lattice.time_steps", p.step_control ? "reversible" : "a list", "its steps differ; use lattice.time_step");
   if (p.cell_courant != 0)
     refuse("lattice.cell_courant", fmt::format("{}", p.cell_courant), "its cells step by themselves");
-  const auto density = text_of(p, simulation);
+  const auto density = text_of(p, simulation.theory());
   if (!density)
     throw BadInput("theory.name",
                    fmt::format("theory.name = {}: is compiled, and has no formula to expand; write it as "

@@ -92,6 +92,15 @@ std::vector<Parameter> command_keys() {
        .unit = "seconds",
        .range = {.low = 0, .high = 600, .open = true}},
 
+      {.key = "cite.format",
+       .fallback = "latex",
+       .help = "the text of `delf cite` without --out: LaTeX, Markdown as Pandoc reads it, or plain text",
+       .choices = {"latex", "markdown", "text"}},
+      {.key = "cite.sources",
+       .fallback = "",
+       .help = "what the theory of the scene rests on, as keys of references.bib separated by commas",
+       .otherwise = "the sources of theory.name"},
+
       {.key = "convergence.levels",
        .fallback = 4,
        .help = "lines of the table, each with half of the steps of the one before",

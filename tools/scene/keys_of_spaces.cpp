@@ -42,13 +42,12 @@ const std::vector<KeysOfSpaces>& keys_of_spaces() {
        {"output.film", "film.seconds", "lattice.courant", "lattice.time_step", "run.until", "run.steps",
         "output.every"}},
       {{circle, interval, point, mesh, still, spacetime},
-       {"theory.name",        "theory.fibre",          "lattice.space",         "scheme.method",
-        "scheme.tolerance",   "scheme.max_iterations", "initial.state",         "run.seed",
-        "output.checkpoint",  "output.fields",         "output.figures",        "output.format",
-        "output.titles",      "output.report",         "verify.variations",     "verify.moments",
-        "verify.tolerance",   "verify.fault",          "verify.generator",      "verify.force",
-        "convergence.levels", "convergence.order",     "convergence.agreement", "stability.agreement",
-        "stability.steps",    "stability.fault"}},
+       {"theory.name",           "theory.fibre",     "lattice.space",      "scheme.method",     "scheme.tolerance",
+        "scheme.max_iterations", "initial.state",    "run.seed",           "output.checkpoint", "output.fields",
+        "output.figures",        "output.format",    "output.titles",      "output.report",     "verify.variations",
+        "verify.moments",        "verify.tolerance", "verify.fault",       "verify.generator",  "verify.force",
+        "cite.format",           "cite.sources",     "convergence.levels", "convergence.order", "convergence.agreement",
+        "stability.agreement",   "stability.steps",  "stability.fault"}},
   };
   return all;
 }

@@ -13,7 +13,7 @@ namespace {
 std::string resolved(const Scene& scene, const Parameter& key, StartRule start) {
   if (!why_without_effect(scene, key.key).empty()) return {};
   // keys that a run does not read
-  for (const char* section : {"verify.", "workprecision.", "stability.", "sweep.", "convergence.", "reproduce."})
+  for (const char* section : {"verify.", "workprecision.", "stability.", "sweep.", "convergence.", "reproduce.", "cite."})
     if (key.key.starts_with(section) && !scene.settings.find(key.key)) return {};
   if (key.key == "lattice.courant" || key.key == (scene.until ? "run.steps" : "run.until")) return {};
   if (key.key == "lattice.stencil") return scene.problem.stencil;  // of an alias, the name that it stands for

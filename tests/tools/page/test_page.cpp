@@ -8,7 +8,6 @@
 #include "tests/tools/python.hpp"
 #include "tools/page/markup.hpp"
 #include "tools/page/page_figures.hpp"
-#include "tools/page/sha256.hpp"
 
 using namespace delf::testing;
 
@@ -63,17 +62,6 @@ TEST_CASE("data URLs hold what their files hold") {
   CHECK(delf::data_url("png", "\xff\xfe\xfd") == "data:image/png;base64,//79");
   CHECK(delf::data_url("svg+xml", "<a b=\"#%\">\n&lt;</a>") ==
         "data:image/svg+xml,%3Ca b=%22%23%25%22%3E %26lt;%3C/a%3E");
-}
-
-TEST_CASE("files are named with their SHA-256") {
-  const Folder folder;
-  folder.write("abc", "abc");
-  folder.write("with blank", "");
-  const auto sums = delf::sha256_of(folder.path(), {"abc", "with blank", "not there"});
-  CHECK(sums.size() == 2);
-  // FIPS 180-4, example B.1, and the empty message
-  CHECK(sums.at("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  CHECK(sums.at("with blank") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
 TEST_CASE("the page of a run has its verdict, equations, numbers and figures in one small file") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/page/result_folder.hpp"
+#include "tools/results/result_folder.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "lattice/index.hpp"
-#include "tools/page/sha256.hpp"
 #include "tools/report/failure.hpp"
+#include "tools/results/sha256.hpp"
 #include "tools/scene/recorded_scene.hpp"
 
 namespace delf {
@@ -42,10 +42,11 @@ bool is_of_delf(const std::string& kind, const Json& json) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(const fs::path& given) : path(given) {
+ResultFolder::ResultFolder(const fs::path& given, const char* command) : path(given) {
   std::error_code none;
   if (!fs::is_directory(path, none))
-    throw BadScene(fmt::format("command line: report {}: no such folder; name a folder of results", path.string()));
+    throw BadScene(
+        fmt::format("command line: {} {}: no such folder; name a folder of results", command, path.string()));
   const fs::path whole = fs::weakly_canonical(path, none);
   name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
   for (const std::string& kind : kinds()) {
@@ -68,16 +69,9 @@ ResultFolder::ResultFolder(const fs::path& given) : path(given) {
   series = SeriesTable(path / "series.csv");
   if (results.empty() && damaged.empty() && scene.empty() && series.columns.empty())
     throw BadScene(
-        fmt::format("command line: report {}: holds no results of delf; name a folder that has a scene.ini, "
+        fmt::format("command line: {} {}: holds no results of delf; name a folder that has a scene.ini, "
                     "summary.json or verify.json",
-                    path.string()));
-  list_files();
-  if (scene.empty()) missing.emplace_back("There is no scene.ini: keys, equations and the command are not known.");
-  if (!result("summary") && !damaged.contains("summary") && !series.columns.empty())
-    missing.emplace_back("There is no summary.json: the run goes on still, or was killed.");
-  if (!result("verify") && !damaged.contains("verify"))
-    missing.emplace_back("There is no verify.json: nobody has verified these rows here.");
-  if (figures.empty()) missing.emplace_back("There are no figures.");
+                    command, path.string()));
 }
 
 void ResultFolder::list_files() {
@@ -109,6 +103,12 @@ void ResultFolder::list_files() {
     const auto bytes = fs::file_size(path / file, error);
     files.push_back({file, error ? 0 : bytes, sum == sums.end() ? "" : sum->second});
   }
+  if (scene.empty()) missing.emplace_back("There is no scene.ini: keys, equations and the command are not known.");
+  if (!result("summary") && !damaged.contains("summary") && !series.columns.empty())
+    missing.emplace_back("There is no summary.json: the run goes on still, or was killed.");
+  if (!result("verify") && !damaged.contains("verify"))
+    missing.emplace_back("There is no verify.json: nobody has verified these rows here.");
+  if (figures.empty()) missing.emplace_back("There are no figures.");
 }
 
 const Json* ResultFolder::result(const std::string& file) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/page/sha256.hpp"
+#include "tools/results/sha256.hpp"
 
 #include <fcntl.h>
 #include <sys/wait.h>

@@ -13,10 +13,10 @@
 
 namespace delf {
 
-/// A folder of results, as a page reads it: whatever is there, of a run that ended, failed, or was killed.
+/// A folder of results: whatever is there, of a run that ended, failed, or was killed.
 struct ResultFolder {
-  /// Throws BadInput for what is no folder, or holds no results.
-  explicit ResultFolder(const std::filesystem::path&);
+  /// Throws BadInput, in the name of a command, for what is no folder, or holds no results.
+  ResultFolder(const std::filesystem::path&, const char* command);
 
   struct File {
     std::string name;  ///< in the folder
@@ -31,10 +31,10 @@ struct ResultFolder {
   std::filesystem::path scene_file;     ///< scene.ini, of a sweep that of its first run
   std::string scene;                    ///< its text
   std::map<std::string, std::string> keys;
-  SeriesTable series;  ///< series.csv
-  std::vector<File> files;
-  std::size_t further_files = 0;  ///< not among these: there are too many
-  std::vector<std::string> figures;
+  SeriesTable series;                ///< series.csv
+  std::vector<File> files;           ///< of list_files()
+  std::size_t further_files = 0;     ///< not among these: there are too many
+  std::vector<std::string> figures;  ///< of list_files()
   std::vector<std::string> missing;  ///< in words
 
   /// A result by the name of its file; null if it is not there.
@@ -42,8 +42,7 @@ struct ResultFolder {
   /// The results in the order in which a page shows them.
   static const std::vector<std::string>& kinds();
   bool has_file(const std::string& name) const;
-
- private:
+  /// Lists all files, with the sums of what they hold, and says in `missing` what a page has not.
   void list_files();
 };
 

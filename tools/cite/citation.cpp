@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/page/citation.hpp"
+#include "tools/cite/citation.hpp"
 
 namespace delf {
 

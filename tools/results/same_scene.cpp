@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/page/same_scene.hpp"
+#include "tools/results/same_scene.hpp"
 
 #include <fmt/format.h>
 
