@@ -139,13 +139,13 @@ ExitCode plan_modified(const Scene& scene, int order, bool latex) {
     const Simulation simulation = build(scene, initial.winding());
     try {
       ModifiedLagrangian modified = modified_lagrangian(scene.problem, simulation, order);
-      const SymbolicDensity& density = *text_of(scene.problem, simulation.theory());
+      const std::shared_ptr<const SymbolicDensity> density = text_of(scene.problem, simulation.theory());
       if (latex) {
-        fmt::print("{}", modified_in_latex(modified, density));
+        fmt::print("{}", modified_in_latex(modified, *density));
         return ExitCode::done;
       }
       fmt::print("{}: {}, {}{}\n{}", scene.name, scene.problem.theory, scheme_in_words(scene.problem),
-                 simulation.is_processed() ? ", the rows of its kernel" : "", modified_in_words(modified, density));
+                 simulation.is_processed() ? ", the rows of its kernel" : "", modified_in_words(modified, *density));
     } catch (const BadInput& bad) {
       throw scene.settings.located(bad);
     }

@@ -28,7 +28,8 @@ TEST_CASE("help, version and lists go to stdout and succeed") {
 TEST_CASE("the helps of all commands list every key") {
   const Folder folder;
   std::string help;
-  for (const char* command : {"run", "verify", "sweep", "convergence", "stability", "workprecision", "reproduce"})
+  for (const char* command :
+       {"run", "verify", "sweep", "convergence", "stability", "workprecision", "reproduce", "film", "cite"})
     help += delf_program(folder, std::string("help ") + command).out;
   for (const auto& key : delf::keys()) CHECK(contains(help, key.key));
 }
@@ -153,5 +154,5 @@ TEST_CASE("bash completes commands, scenes, keys, their values and files of rows
   CHECK(complete("delf reproduce mps-sym", "delf reproduce mps-sym", true) ==
         "mps-symmetric\nmps-symmetric-differences\nmps-symmetric-order\n");
   CHECK(complete("delf verify kink --fields ro", "delf verify kink --fields ro", true) == "rows.csv\n");
-  CHECK(complete("delf verify kink --fi", "delf verify kink --fi", true) == "--fields\n");
+  CHECK(complete("delf verify kink --fie", "delf verify kink --fie", true) == "--fields\n");
 }

@@ -67,8 +67,8 @@ TEST_CASE("what has no modified Lagrangian is refused in one line") {
   refused("run collision --modified", "--modified: `run` prints no modified Lagrangian");
   refused("plan sphere --modified", "is for lattices");
   refused("plan collision --modified --scheme.method=guo", "has no modified Lagrangian");
-  refused("plan pendulum --modified --scheme.method=dgvi", "has no modified Lagrangian");
-  refused("plan nls --modified", "not of second order in the time derivatives");
+  refused("plan nls --modified", "has other parts beside the density, such as multipliers");
+  refused("plan kdv --modified", "not of second order in the time derivatives");
   refused("plan solar-system --modified", "theory.name = solar-system: is compiled");
   refused("run collision --output.modified=3 --run.steps=2", "output.modified = 3: is an even order");
 }

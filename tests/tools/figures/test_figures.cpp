@@ -366,7 +366,7 @@ TEST_CASE("errors, phase portraits and spectra are drawn where there are any") {
   CHECK(contains(spectrum, "waves about φ = 0"));
   CHECK(contains(spectrum, "frequency"));
   CHECK(drawn("collision --run.until=2", "spectrum").empty());
-  const Ran wall = delf_program(folder, "run kink --figures.spectrum=on --run.until=1 --out wall");
+  const Ran wall = delf_program(folder, "run soliton-bounce --figures.spectrum=on --run.until=0.1 --out wall");
   CHECK(wall.code == 0);
   CHECK(contains(wall.err, "only a circle has waves"));
 }
