@@ -78,7 +78,7 @@ TEST_CASE("the page of a run has its verdict, equations, numbers and figures in 
   CHECK(count(page, "<math ") == 3);  // density, field equation, discrete equation
   CHECK(count(page, "<img ") == 3);
   CHECK(count(page, "data:image/svg+xml,") == 3);
-  CHECK(count(page, "<details>") == 4);  // the numbers of each figure, and the series
+  CHECK(count(page, "<details>") == 5);  // the numbers of each figure, the series, and the references
   CHECK(contains(page, "The field over space and time. φ is between"));
   CHECK(contains(page, "delf run scene.ini"));
   CHECK(contains(page, "stencil = rectangle-symmetric"));
