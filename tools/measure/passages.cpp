@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/measure/entries.hpp"
 
@@ -91,7 +92,7 @@ class CrossingTime final : public Passage {
 class SectionValue final : public Passage {
  public:
   SectionValue(const MeasuredField& field, const std::vector<double>& numbers)
-      : Passage(field, numbers[1], numbers[2], true), of_(static_cast<std::size_t>(numbers[0]) - 1) {
+      : Passage(field, numbers[1], numbers[2], true), of_(at(numbers[0]) - 1) {
     if (field.lattice.space() != Space::point || !(numbers[0] >= 1 && numbers[0] <= field.fields))
       throw BadInput("", "sections are those of a point, and its coordinates are 1, 2, ...; choose one of them");
   }

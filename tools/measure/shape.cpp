@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lattice/error.hpp"
+#include "lattice/index.hpp"
 #include "schemes/stepping/saved_state.hpp"
 #include "tools/measure/entries.hpp"
 
@@ -73,7 +74,7 @@ class Peak final : public OfLastRow {
   Peak(const MeasuredField& field, const std::vector<double>& numbers) : OfLastRow(field) {
     if (!(numbers[0] >= 1 && numbers[0] == std::round(numbers[0])))
       throw BadInput("", "peaks are 1, 2, ... from the highest; choose one of them");
-    number_ = static_cast<std::size_t>(numbers[0]);
+    number_ = at(numbers[0]);
   }
 
  private:

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "lattice/index.hpp"
+
 namespace delf {
 
 std::string field_symbol(const std::string& name) {
@@ -11,7 +13,7 @@ std::string field_symbol(const std::string& name) {
   std::string symbol = "φ";
   for (const char digit : name.substr(3)) {
     if (digit < '0' || digit > '9') return name;  // a name of its own, such as phi_left
-    symbol += digits[static_cast<std::size_t>(digit - '0')];
+    symbol += digits[at(digit - '0')];
   }
   return symbol;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "jets/expressions/graph.hpp"
+#include "lattice/index.hpp"
 
 namespace delf::expressions {
 
@@ -42,7 +43,7 @@ class JetAlgebra {
 
   int highest_order() const { return highest_; }
   void set_highest_order(int order) { highest_ = order; }
-  const Atom& atom(int number) const { return atoms_[static_cast<std::size_t>(number)]; }
+  const Atom& atom(int number) const { return atoms_[at(number)]; }
   double order(const Monomial&) const;
 
   static JetSum constant(double);
@@ -82,7 +83,7 @@ class JetAlgebra {
   JetSum of_order(const JetSum&, int order) const;
 
   /// The variables that an atom depends on.
-  const std::vector<int>& variables_of(int atom) const { return depends_[static_cast<std::size_t>(atom)]; }
+  const std::vector<int>& variables_of(int atom) const { return depends_[at(atom)]; }
   bool depends(const JetSum&, const std::function<bool(int variable)>&) const;
 
  private:

@@ -6,6 +6,7 @@
 
 #include "jets/expressions/expression.hpp"
 #include "jets/expressions/print.hpp"
+#include "lattice/index.hpp"
 
 namespace delf::expressions {
 
@@ -28,7 +29,7 @@ class ModifiedJets {
     return place->second;
   }
   bool is_jet(int variable) const { return variable >= first(); }
-  const Derivative& jet(int variable) const { return jets_[static_cast<std::size_t>(variable - first())]; }
+  const Derivative& jet(int variable) const { return jets_[at(variable - first())]; }
   bool is_difference(int variable) const { return is_jet(variable) && jet(variable).kind > 0; }
   int fields() const { return static_cast<int>(names_.fields.size()); }
   const ExpressionNames& names() const { return names_; }
