@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <regex>
+#include <span>
 
 #include "schemes/driven_ends.hpp"
 #include "schemes/methods/energies.hpp"
@@ -18,11 +19,13 @@
 #include "schemes/states/state_registry.hpp"
 #include "schemes/stepping/evolution.hpp"
 #include "schemes/theories/field_theory.hpp"
+#include "schemes/theories/theory_registry.hpp"
 #include "tools/cite/result_words.hpp"
 #include "tools/cite/state_formulas.hpp"
 #include "tools/cite/theory_words.hpp"
 #include "tools/rows/engine.hpp"
 #include "tools/rows/initial_rows.hpp"
+#include "tools/run/moves_walls.hpp"
 #include "tools/scene/values.hpp"
 #include "tools/warnings/vacuum_symbol.hpp"
 
@@ -38,6 +41,16 @@ std::optional<EquationsForPaper> equations_for_paper(const Of&... of) {
   if (!latex || !plain) return std::nullopt;
   plain->density = std::regex_replace(plain->density, std::regex("cosm1\\(([^()]*)\\)"), "(cos($1) - 1)");
   return EquationsForPaper{std::move(*latex), std::move(*plain)};
+}
+
+/// The equations of mechanics have rows and no sites: u^{j+1} for u_{i}^{j+1}.
+void leave_out_sites(EquationsForPaper& equations) {
+  for (std::string& formula : equations.latex.discrete) {
+    formula = std::regex_replace(formula, std::regex("_\\{i\\}\\^\\{j"), "^{j");
+    formula = std::regex_replace(formula, std::regex(",\\s*i\\}\\^\\{j"), "}^{j");
+  }
+  for (std::string& formula : equations.plain.discrete)
+    formula = std::regex_replace(formula, std::regex("\\((j[-+]?[0-9]*),i\\)"), "($1)");
 }
 
 void say_discrete(PaperText& text, const std::optional<EquationsForPaper>& equations, bool on_point) {
@@ -58,9 +71,22 @@ std::vector<std::string> sources_of_method(const Problem& p) {
   return sources;
 }
 
+/// The names of what a run conserves by Noether's theorem, but for those that walls take up.
+std::vector<std::string> conserved_between_walls(const Simulation& simulation,
+                                                 const std::vector<LinearSymmetry>& symmetries,
+                                                 std::span<const double> row0, const Problem& p) {
+  std::vector<std::string> kept = simulation.conserved_names();
+  std::erase_if(kept, [&](const std::string& name) {
+    const auto symmetry = std::ranges::find(symmetries, name, &LinearSymmetry::name);
+    return symmetry != symmetries.end() && moves_walls(*symmetry, row0, p);
+  });
+  for (std::string& name : kept) std::ranges::replace(name, '_', ' ');
+  return kept;
+}
+
 /// The method with its order, and what it conserves; the equations of its stencil.
 void say_method(PaperText& text, const Problem& p, const Simulation& simulation,
-                const std::optional<EquationsForPaper>& equations) {
+                const std::optional<EquationsForPaper>& equations, const std::vector<std::string>& kept) {
   const MethodEntry& method = find_method(p.method);
   const bool on_point = p.lattice.space() == Space::point;
   const bool shows = equations && !equations->latex.discrete.empty();
@@ -69,8 +95,6 @@ void say_method(PaperText& text, const Problem& p, const Simulation& simulation,
   say_discrete(text, equations, on_point);
   if (const auto order = method.order ? method.order(p) : std::nullopt)
     text.say(fmt::format("The scheme is of order {}.", *order));
-  std::vector<std::string> kept = simulation.conserved_names();
-  for (std::string& name : kept) std::ranges::replace(name, '_', ' ');
   if (is_variational(simulation.evolution().system())) {
     const bool named = !kept.empty() && !kept[0].starts_with("symmetry"),
                is_quantity =
@@ -80,9 +104,15 @@ void say_method(PaperText& text, const Problem& p, const Simulation& simulation,
                                   : is_quantity   ? "the " + kept[0]
                                   : named         ? "the momentum of its symmetry, the " + kept[0]
                                                   : "the momentum of its symmetry";
-    text.say(fmt::format("Being variational, it {}{}.",
-                         on_point ? "is symplectic" : "satisfies the discrete multisymplectic form formula",
-                         kept.empty() ? "" : ", and by the discrete Noether theorem it conserves " + conserved));
+    if (p.step_control)
+      text.say(fmt::format(
+          "For given lengths of its steps it is variational{}. The field chooses them, and the map from rows to rows is "
+          "reversible, not symplectic.",
+          kept.empty() ? "" : ", and by the discrete Noether theorem each step conserves " + conserved));
+    else
+      text.say(fmt::format("Being variational, it {}{}.",
+                           on_point ? "is symplectic" : "satisfies the discrete multisymplectic form formula",
+                           kept.empty() ? "" : ", and by the discrete Noether theorem it conserves " + conserved));
   } else
     text.say(on_point ? "It is not variational." : "It is not variational, and has no multisymplectic form formula.");
   if (const auto own = own_energy(simulation, p); own && method.own_energy == own->entry)
@@ -112,7 +142,10 @@ std::optional<double> linear_limit(const Scene& scene, const Simulation& simulat
     const auto stable = stable_courants(make, most_courant,
                                         {.samples = 60, .tolerance = 1e-6, .constant = *vacuum, .wave_numbers = 65});
     if (stable.empty()) return std::nullopt;
-    return stable.front().to >= most_courant ? std::numeric_limits<double>::infinity() : stable.front().to;
+    if (stable.front().to < most_courant) return stable.front().to;
+    // what was looked at must hold the run's own step
+    if (scene.problem.time_step / k > most_courant) return std::nullopt;
+    return std::numeric_limits<double>::infinity();
   } catch (const std::exception&) {  // what has no symbol on a circle has no limit here
     return std::nullopt;
   }
@@ -151,14 +184,35 @@ void say_lattice(PaperText& text, const Scene& scene, const Simulation& simulati
                                                 number_in_paper(*courant, 4).substr(1)));
 }
 
+/// The sources of a state that hold for the theory: where it names some of them, those of other theories are left out.
+std::vector<std::string> sources_of_state(const StateEntry& state, const std::string& theory) {
+  std::vector<std::string> sources = state.sources;
+  const auto names = [](const std::string& of, const std::string& key) {
+    return std::ranges::find(find_theory(of).sources, key) != find_theory(of).sources.end();
+  };
+  if (std::ranges::none_of(sources, [&](const std::string& key) { return names(theory, key); })) return sources;
+  std::erase_if(sources, [&](const std::string& key) {
+    const auto named = [&](const std::string& other) { return names(other, key); };
+    return !names(theory, key) &&
+           (std::ranges::any_of(state.exact, named) || std::ranges::any_of(state.approximate, named));
+  });
+  return sources;
+}
+
+std::vector<std::string> names_of_fields(const auto& fields) {
+  std::vector<std::string> names;
+  for (const auto& field : fields) names.push_back(field.name);
+  return names;
+}
+
 /// The initial state, "kink: phi = …" without the name, and the rule of the row behind it.
-void say_start(PaperText& text, const Scene& scene, const InitialRows& initial) {
+void say_start(PaperText& text, const Scene& scene, const InitialRows& initial, const Simulation& simulation) {
   std::string words = initial.description();
   std::vector<std::string> sources;
   if (scene.from_file()) words = "read from the file " + scene.initial_file.filename().string();
   else {
     const std::string& named = scene.initial.name;
-    sources = find_state(named).sources;
+    sources = sources_of_state(find_state(named), scene.problem.theory);
     if (words.starts_with(named))
       if (const std::size_t end = words.find(": "); end != words.npos) words.erase(0, end + 2);
     if (sources == std::vector<std::string>{"delf"}) sources.clear();  // the scene says it
@@ -168,12 +222,20 @@ void say_start(PaperText& text, const Scene& scene, const InitialRows& initial) 
       : initial.rule() == StartRule::centred ? "the second row solves the field equation at the first, with $y_{-1} = "
                                                "y_1 - 2h\\,\\varphi_t$"
       : initial.rule() == StartRule::values  ? "the first step needs no more than these values"
-                                             : "the first step follows from the discrete Legendre transform";
-  text.say(fmt::format("The initial state{} is {}; {}.", citation_of(sources), with_formulas(words), first_row));
+      : is_variational(simulation.evolution().system()) ? "the first step follows from the discrete Legendre transform"
+      : scene.problem.lattice.space() == Space::point   ? "the first step starts from $q$ and $q_t$"
+                                                        : "the first step starts from the field and its rate";
+  words = with_formulas(with_names_of_equations(words, scene, names_of_fields(simulation.theory().fields())));
+  text.say(fmt::format("The initial state{} is {}{}; {}.", citation_of(sources), words, parameters_of_start(scene),
+                       first_row));
 }
 
 /// How a step is solved, from the words of the plan.
-void say_solution(PaperText& text, const std::string& solve, bool is_explicit, double tolerance) {
+void say_solution(PaperText& text, const Simulation& simulation, double tolerance) {
+  const std::string solve = simulation.solve_summary();
+  // a plan may be explicit for unknowns that are still found by iteration, one by one
+  const bool is_explicit = std::string(simulation.solve_kind()) == "explicit" &&
+                           solve.find("iterated with") == solve.npos && solve.find("Newton") == solve.npos;
   const auto behind = [&](const std::string& mark) {
     const std::size_t at = solve.find(mark);
     return at == solve.npos ? std::string() : solve.substr(at + mark.size());
@@ -234,13 +296,15 @@ PaperText methods_text(const Scene& scene, const ResultFolder* folder) {
   const Simulation simulation = build(scene, initial.winding());
   initial.check(simulation);
   const Problem& p = scene.problem;
-  const auto equations = equations_for_paper(p, simulation);
+  auto equations = equations_for_paper(p, simulation);
+  if (equations && p.lattice.space() == Space::point) leave_out_sites(*equations);
   PaperText text;
   say_theory(text, scene, equations, where_and_when(scene, initial));
-  say_method(text, p, simulation, equations);
+  say_method(text, p, simulation, equations,
+             conserved_between_walls(simulation, simulation.symmetries(), initial.row0(), p));
   say_lattice(text, scene, simulation, folder);
-  say_start(text, scene, initial);
-  say_solution(text, simulation.solve_summary(), std::string(simulation.solve_kind()) == "explicit", p.tolerance);
+  say_start(text, scene, initial, simulation);
+  say_solution(text, simulation, p.tolerance);
   if (folder) say_results(text, *folder);
   say_program(text, folder, scene.fields);
   return text;
@@ -263,7 +327,8 @@ PaperText methods_text(const ComplexScene& c, const ResultFolder* folder) {
   if (c.time == MeshTime::rows) {
     p = c.problem_on_mesh();
     simulation.emplace(p);
-    say_method(text, p, *simulation, std::nullopt);
+    say_method(text, p, *simulation, std::nullopt,
+               conserved_between_walls(*simulation, c.theory->symmetries(), c.values(), scene.problem));
   } else if (c.time == MeshTime::cells)
     text.say(fmt::format(
         "We use the asynchronous variational integrator{} with linear finite elements of lumped mass, in which "
@@ -294,7 +359,7 @@ PaperText methods_text(const ComplexScene& c, const ResultFolder* folder) {
     else
       text.say(fmt::format("The time step is {}, and {} steps lead to {}.", equal_in_paper("h", p.time_step),
                            scene.steps, equal_in_paper("t", scene.end())));
-    if (simulation && !c.has_method())
+    if (simulation && !c.has_method() && !c.theory->constraint())  // 0 need not be on the surface of a constraint
       if (const auto most = longest_step(simulation->evolution().system()))
         text.say(
             fmt::format("By linear theory about 0 it is stable for $h < {}.", number_in_paper(*most, 4).substr(1)));
@@ -302,23 +367,35 @@ PaperText methods_text(const ComplexScene& c, const ResultFolder* folder) {
       text.say(fmt::format("The constraint is kept at every row, as by SHAKE{}.",
                            citation_of({"ryckaert-ciccotti-berendsen-1977"})));
   }
+  const bool in_time = c.time == MeshTime::rows || c.time == MeshTime::cells;
   const auto given = [&](const char* kind, std::initializer_list<const char*> rates) {
     std::string words;
     for (const ComplexScene::Field& field : c.fields)
-      for (const char* rate : rates)
-        if (const Setting* formula = scene.settings.find(kind + field.name + rate))
-          words += fmt::format("{}{}{} = {}", words.empty() ? "" : "; ", field.name, rate, formula->value);
-    return with_formulas(words);
+      for (const char* rate : rates) {
+        const Setting* formula = scene.settings.find(kind + field.name + rate);
+        const bool rests = !formula && *rate != 0 && in_time && scene.settings.find(kind + field.name);
+        if (formula || rests)
+          words +=
+              fmt::format("{}{}{} = {}", words.empty() ? "" : "; ", field.name, rate, rests ? "0" : formula->value);
+      }
+    return with_formulas(with_names_of_equations(words, scene, names_of_fields(c.fields)));
   };
   const std::string solution = given("exact.", {""}), initial = given("initial.", {"", "_t"});
   const char* const subject = c.time == MeshTime::none    ? "The field at the fixed points"
                               : c.time == MeshTime::sites ? "The field at the sites with data"
                                                           : "The initial state";
-  if (!solution.empty()) text.say(fmt::format("{} is {}.", subject, solution));
+  const bool is_legendre = !simulation || is_variational(simulation->evolution().system());
+  const std::string where_values = parameters_of_start(scene),
+                    first_step = !in_time      ? ""
+                                 : is_legendre ? "; the first step follows from the discrete Legendre transform"
+                                               : "; the first step starts from the field and its rate";
+  if (!solution.empty())
+    text.say(fmt::format("{} is {}{}{}{}.", subject, solution, where_values,
+                         in_time ? " at $t = 0$, with the rate of this solution" : "", first_step));
   if (!initial.empty())
-    text.say(fmt::format("{} is {}.", solution.empty() ? subject : "The first guess elsewhere", initial));
-  if (simulation)
-    say_solution(text, simulation->solve_summary(), std::string(simulation->solve_kind()) == "explicit", p.tolerance);
+    text.say(fmt::format("{} is {}{}{}.", solution.empty() ? subject : "The first guess elsewhere", initial,
+                         solution.empty() ? where_values : "", solution.empty() ? first_step : ""));
+  if (simulation) say_solution(text, *simulation, p.tolerance);
   else if (c.time == MeshTime::cells) text.say("Each update of a cell is explicit, in the order of a priority queue.");
   else
     text.say(fmt::format(

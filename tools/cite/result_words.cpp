@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
+#include <regex>
 #include <set>
 
 #include "tools/peers/body_peers.hpp"
@@ -21,13 +23,20 @@ std::string with_blanks(std::string name) {
   return name;
 }
 
+/// "FILE:LINE: key: …" without the place, which is one of the machine.
+std::string without_place(const std::string& words) {
+  static const std::regex place("^.*?\\.ini:[0-9]+: |^\\S+:[0-9]+: ");
+  return std::regex_replace(words, place, "", std::regex_constants::format_first_only);
+}
+
 void say_run(PaperText& text, const Json& run) {
   const std::string status = text_in(&run, "status");
   const auto steps = number_in(&run, "steps");
   const auto time = number_in(&run, "time");
   if (status != "done")
-    text.say(fmt::format("The run ended early, at {}: {}.", equal_in_paper("t", time.value_or(0)),
-                         text_in(&run, "failure").empty() ? "it was " + status : text_in(&run, "failure")));
+    text.say(
+        fmt::format("The run ended early, at {}: {}.", equal_in_paper("t", time.value_or(0)),
+                    text_in(&run, "failure").empty() ? "it was " + status : without_place(text_in(&run, "failure"))));
   std::vector<std::string> found;
   if (const auto error = number_in(&run, "energy_error_max"); error && steps.value_or(0) > 0)
     found.push_back(fmt::format("a relative error of the energy of at most {}", error_in_paper(*error)));
@@ -47,7 +56,7 @@ void say_run(PaperText& text, const Json& run) {
   if (!found.empty()) text.say(fmt::format("The run shows {}.", listed(found)));
   if (const auto warnings = texts_in(&run, "warnings"); !warnings.empty())
     text.say(fmt::format("It ended with {}: {}.", warnings.size() == 1 ? "a warning" : "warnings",
-                         fmt::join(warnings, "; ")));
+                         fmt::join(warnings | std::views::transform(without_place), "; ")));
 }
 
 void say_verification(PaperText& text, const ResultFolder& folder, const Json& verify) {
@@ -84,8 +93,9 @@ void say_verification(PaperText& text, const ResultFolder& folder, const Json& v
     text.say(fmt::format("All {} checks of `delf verify` passed{}{}.", checks.size(),
                          held.empty() ? "" : ", among them " + listed(held), held.empty() ? "" : ", " + sums));
   else
-    text.say(fmt::format("{} of {} checks of `delf verify` failed: {}{}.", failed.size(), checks.size(), listed(failed),
-                         held.empty() ? "" : "; those that passed include " + listed(held) + ", " + sums));
+    text.say(fmt::format("{} of {} checks of `delf verify` failed: {}.{}", failed.size(), checks.size(),
+                         fmt::join(failed, "; "),  // their names have commas
+                         held.empty() ? "" : " Those that passed include " + listed(held) + ", " + sums + "."));
 }
 
 void say_convergence(PaperText& text, const Json& convergence) {

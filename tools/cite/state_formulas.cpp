@@ -171,7 +171,18 @@ std::string latex_of(const std::vector<Token>& run) {
   return latex;
 }
 
-/// "f = let s = A; B" as "f = B with s = A".
+/// The end of the last ", " before `end` that stands in no parentheses; 0 if there is none.
+std::size_t last_item(const std::string& words, std::size_t end) {
+  int depth = 0;
+  std::size_t begin = 0;
+  for (std::size_t at = 0; at < end; ++at) {
+    depth += words[at] == '(' ? 1 : words[at] == ')' ? -1 : 0;
+    if (depth == 0 && words.compare(at, 2, ", ") == 0) begin = at + 2;
+  }
+  return begin;
+}
+
+/// "f = let s = A; B" as "f = B with s = A", for each formula by itself: "f = let s = A; B, g = let r = C; D".
 std::string with_definitions_last(const std::string& words) {
   std::vector<std::string> parts;
   for (std::size_t at = 0; at <= words.size();) {
@@ -182,9 +193,18 @@ std::string with_definitions_last(const std::string& words) {
   std::string text, definitions;
   constexpr std::string_view let = "let ", is_let = " = let ";
   std::string head;
-  for (const std::string& part : parts) {
-    const std::size_t inside = part.find(is_let);
+  const auto put = [&](const std::string& part) {
+    text += (text.empty() ? "" : "; ") + head + part + (head.empty() ? "" : " with " + definitions);
+    head.clear();
+  };
+  for (std::string part : parts) {
+    std::size_t inside = part.find(is_let);
     if (inside != part.npos) {
+      if (const std::size_t begin = last_item(part, inside); !head.empty() && begin > 0) {
+        put(part.substr(0, begin - 2));
+        part.erase(0, begin);
+        inside -= begin;
+      }
       head = part.substr(0, inside + 3);
       definitions = part.substr(inside + is_let.size());
       continue;
@@ -193,8 +213,7 @@ std::string with_definitions_last(const std::string& words) {
       definitions += ", " + part.substr(let.size());
       continue;
     }
-    text += (text.empty() ? "" : "; ") + head + part + (head.empty() ? "" : " with " + definitions);
-    head.clear();
+    put(part);
   }
   return text;
 }

@@ -5,12 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <regex>
-#include <vector>
+#include <utility>
 
 #include "jets/expressions/print.hpp"
 #include "lattice/text_parts.hpp"
 #include "schemes/declared.hpp"
+#include "schemes/driven_ends.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/theories/theory_registry.hpp"
 #include "schemes/theories/theory_text.hpp"
@@ -28,6 +30,32 @@ const TheoryText* text_of_entry(const std::string& theory) {
   return found == theory_texts().end() ? nullptr : &*found;
 }
 
+/// A name stands in a text as a whole word.
+bool occurs(const std::string& name, const std::string& text) {
+  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  for (std::size_t at = 0; (at = text.find(name, at)) != text.npos; at += name.size())
+    if ((at == 0 || !in_name(text[at - 1])) && (at + name.size() == text.size() || !in_name(text[at + name.size()])))
+      return true;
+  return false;
+}
+
+/// The formulas of a theory that the scene gives itself.
+std::string given_formulas(const Scene& scene) {
+  const Values values(scene.settings);
+  return values.text(density_key).value_or("") + " " + values.text(constraint_key).value_or("");
+}
+
+/// The names of the theory's parameters that the scene declares, with their keys.
+std::vector<std::pair<std::string, std::string>> declared_parameters(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const DeclaredKey& declared : scene.settings.declared())
+    if (declared.kind == DeclaredBy::theory) {
+      const std::string& key = declared.parameter.key;
+      names.emplace_back(key.substr(key.find('.') + 1), key);
+    }
+  return names;
+}
+
 /// "$m = 1$ and $\lambda = 2$": the parameters of the density, by its own names.
 std::string parameters_in_force(const Scene& scene, const TheoryText* text) {
   std::vector<std::string> values;
@@ -38,12 +66,11 @@ std::string parameters_in_force(const Scene& scene, const TheoryText* text) {
   };
   if (text)
     for (const auto& [name, key] : text->parameters) add(name, key);
-  else
-    for (const DeclaredKey& declared : scene.settings.declared())
-      if (declared.kind == DeclaredBy::theory) {
-        const std::string& key = declared.parameter.key;
-        add(key.substr(key.find('.') + 1), key);
-      }
+  else {
+    const std::string formulas = given_formulas(scene);
+    for (const auto& [name, key] : declared_parameters(scene))
+      if (scene.settings.find(density_key) == nullptr || occurs(name, formulas)) add(name, key);
+  }
   return listed(values);
 }
 
@@ -99,6 +126,32 @@ void say_theory(PaperText& text, const Scene& scene, const std::optional<Equatio
     else if (rest.starts_with(' ')) rest.erase(0, 1);
     if (!rest.empty()) text.say(rest + ".");
   } else text.say((rest.starts_with(", ") ? rest.substr(2) : rest.empty() ? rest : rest.substr(1)) + ".");
+}
+
+std::string parameters_of_start(const Scene& scene) {
+  if (!scene.settings.find(density_key)) return {};
+  std::string formulas;
+  for (const Setting& s : scene.settings.all())
+    if (s.key.starts_with("initial.") || s.key.starts_with("exact.") || s.key == left_end || s.key == right_end)
+      formulas += s.value + " ";
+  const ParameterValues in_force = completed(scene.problem).parameters;
+  std::vector<std::string> values;
+  for (const auto& [name, key] : declared_parameters(scene))
+    if (occurs(name, formulas) && !occurs(name, given_formulas(scene)))
+      if (const auto value = in_force.maybe<double>(key))
+        values.push_back(equal_in_paper(expressions::latex_name(name), *value));
+  return values.empty() ? "" : ", where " + listed(values);
+}
+
+std::string with_names_of_equations(std::string words, const Scene& scene, const std::vector<std::string>& fields) {
+  const TheoryText* own = scene.settings.find(density_key) ? nullptr : text_of_entry(scene.problem.theory);
+  if (!own) return words;
+  const std::vector<std::string> names = parts_of(own->fields, ',');
+  if (names.size() != fields.size()) return words;
+  for (std::size_t a = 0; a < names.size(); ++a)
+    if (names[a] != fields[a])
+      words = std::regex_replace(words, std::regex("\\b" + fields[a] + "(?![A-Za-z0-9])"), names[a]);
+  return words;
 }
 
 void write_for_more_dimensions(EquationsForPaper& equations) {

@@ -79,7 +79,8 @@ const StateEntry kink_state{
     .place = Place::line,
     .build = [](const StateBuild& build) { return initial::any_kink(build, false); },
     .width = initial::kink_width,
-    .sources = {"perring-skyrme-1962"}};
+    .sources = {"perring-skyrme-1962", "campbell-schonfeld-wingate-1983", "campbell-peyrard-sodano-1986",
+                "fei-kivshar-vazquez-1992"}};  // of each theory
 
 extern const StateEntry antikink_state;
 const StateEntry antikink_state{.name = "antikink",
@@ -90,6 +91,7 @@ const StateEntry antikink_state{.name = "antikink",
                                 .place = Place::line,
                                 .build = [](const StateBuild& build) { return initial::any_kink(build, true); },
                                 .width = initial::kink_width,
-                                .sources = {"perring-skyrme-1962"}};
+                                .sources = {"perring-skyrme-1962", "campbell-schonfeld-wingate-1983",
+                                            "campbell-peyrard-sodano-1986", "fei-kivshar-vazquez-1992"}};
 
 }  // namespace delf

@@ -165,7 +165,8 @@ const StateEntry kink_antikink_state{
     .place = Place::line,
     .build = initial::kink_antikink,
     .width = initial::pair_width,
-    .sources = {"perring-skyrme-1962"}};
+    .sources = {"perring-skyrme-1962", "campbell-schonfeld-wingate-1983", "campbell-peyrard-sodano-1986",
+                "fei-kivshar-vazquez-1992"}};  // of each theory
 
 extern const StateEntry kink_kink_state;
 const StateEntry kink_kink_state{
@@ -177,6 +178,6 @@ const StateEntry kink_kink_state{
     .place = Place::line,
     .build = [](const StateBuild& build) { return initial::kink_pair<initial::KinkKink>(build, 2); },
     .width = initial::pair_width,
-    .sources = {"perring-skyrme-1962"}};
+    .sources = {"perring-skyrme-1962", "fei-kivshar-vazquez-1992"}};
 
 }  // namespace delf

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "tests/catch.hpp"
 #include "tests/tools/program.hpp"
@@ -72,7 +73,15 @@ TEST_CASE("cite of a folder has the numbers of its run and of its checks") {
   CHECK(contains(in_one_line(ran.out), "checks of `delf verify` passed, among them the field equations to"));
   CHECK(contains(in_one_line(ran.out), "The computation was made with delf"));
   REQUIRE(delf_program(folder, "verify own.ini --out run --output.figures=off --verify.fault=sign").code == 1);
-  CHECK(contains(cited(folder, "run --cite.format=text"), "checks of `delf verify` failed:"));
+  CHECK(contains(cited(folder, "run --cite.format=text"), "checks of `delf verify` failed: field equations; form"));
+  // the place of a warning is one of this machine
+  std::string summary = read(folder / "run/summary.json");
+  const std::string none = "\"warnings\": []";
+  REQUIRE(contains(summary, none));
+  summary.replace(summary.find(none), none.size(),
+                  "\"warnings\": [\"/some/where/own.ini:40: run.every: has no effect\"]");
+  folder.write("run/summary.json", summary);
+  CHECK(contains(cited(folder, "run --cite.format=text"), "It ended with a warning: run.every: has no effect."));
   REQUIRE(delf_program(folder, "cite run --out paper").code == 0);
   CHECK(contains(read(folder / "paper/methods.tex"), "\\cite{delf}"));
   CHECK(contains(read(folder / "paper/methods.md"), "[@delf]"));
@@ -110,6 +119,49 @@ TEST_CASE("what cannot be cited is refused in one line") {
   CHECK(contains(other.err, "--lattice.sites: run/scene.ini says what its results were made with"));
   std::filesystem::remove(folder / "run/scene.ini");
   CHECK(contains(delf_program(folder, "cite run").err, "has no scene.ini"));
+}
+
+TEST_CASE("a methods section says of a scene what holds for it") {
+  const Folder folder;
+  struct Said {
+    const char* arguments;
+    std::vector<std::string> parts, not_said;
+  };
+  const std::vector<Said> all{
+      {"modulational-instability", {"; v(0, x) = "}, {"- b); 2 w s"}},
+      // a plan is explicit, and each unknown of its own equation is iterated
+      {"pendulum", {"simplified Newton method", "phi(j+1) - 2*phi(j)", "at every row j"}, {"is explicit", ",i)"}},
+      {"collision --scheme.method=guo", {"simplified Newton method"}, {"is explicit"}},
+      {"kepler", {"Each step is explicit."}, {}},
+      // walls take the momentum
+      {"fermi-pasta-ulam", {"multisymplectic form formula."}, {"Noether"}},
+      {"kdv", {"tanh(w (x - 15 - 4 w^2 t)), where w = 0.5; the second row"}, {"Noether", "with w = 0.5"}},
+      {"liouville", {"where a = 0.5 and b = 0.5"}, {"with a = 0.5"}},
+      {"wave-map", {"Noether", "rotation x"}, {}},
+      {"sphere", {"phi_t = 0; the first step follows from the discrete Legendre transform"}, {}},
+      {"sphere --lattice.time_steps=reversible --lattice.step_control=0.5",
+       {"is reversible, not symplectic"},
+       {"multisymplectic form formula"}},
+      {"asynchronous", {"at t = 0, with the rate of this solution; the first step"}, {}},
+      {"pendulum --scheme.method=radau-iia", {"the first step starts from q and q_t"}, {"Legendre"}},
+      {"phi4-kink", {"D. K. Campbell"}, {"Perring"}},
+      {"impurity", {"Fei"}, {"Perring", "D. K. Campbell"}},
+      {"kink", {"Perring"}, {"D. K. Campbell", "Fei"}},
+      {"turning-soliton", {"is u = tanh(x - 12) cos(t); v = ", "SHAKE"}, {"By linear theory", "phi1"}},
+      {"kink --lattice.courant=0.5", {"finds no limit of the step up to h/k = 3"}, {}},
+      {"kink --lattice.courant=4", {"h/k = 4"}, {"finds no limit"}}};
+  for (const Said& said : all) {
+    const std::string text = cited(folder, std::string(said.arguments) + " --cite.format=text");
+    INFO(said.arguments << ": " << text);
+    for (const std::string& part : said.parts) {
+      INFO(part);
+      CHECK(contains(text, part));
+    }
+    for (const std::string& part : said.not_said) {
+      INFO(part);
+      CHECK_FALSE(contains(text, part));
+    }
+  }
 }
 
 TEST_CASE("a methods section compiles in LaTeX") {

@@ -54,6 +54,9 @@ TEST_CASE("formulas in the words of states are found, and written in LaTeX") {
   CHECK(with_formulas("exact until t = 25.5, at the wall") == "exact until $t = 25.5$, at the wall");
   CHECK(with_formulas("q = (cos E - e, sqrt(1 - e^2) sin E)") == "$q = (\\cos E - e, \\sqrt{1 - e^{2}} \\sin E)$");
   CHECK(with_formulas("phi = let s = x - 5; exp(-s^2)") == "$\\varphi = \\exp(-s^{2})$ with $s = x - 5$");
+  // each formula keeps its own definitions
+  CHECK(with_formulas("phi(0, x) = let w = 2; w*cos(x), phi_t(0, x) = let r = 3; r*sin(x)") ==
+        "$\\varphi(0, x) = w\\,\\cos(x)$ with $w = 2$; $\\varphi_{t}(0, x) = r\\,\\sin(x)$ with $r = 3$");
   CHECK(with_formulas("phi = 2*w*tanh(w*(x - 15 - 4*w^2*t))") ==
         "$\\varphi = 2\\,w\\,\\tanh(w\\,(x - 15 - 4\\,w^{2}\\,t))$");
   CHECK(with_formulas("the Sun and the outer planets on 5 September 1994") ==
