@@ -93,7 +93,7 @@ std::string equation_in(const std::string& plan) {
   return equation;
 }
 
-/// The table of coefficients, with the steps and the mass that its numbers hold for.
+/// The table of coefficients, with the steps that its numbers hold for.
 Coefficients table_in(const std::string& plan, Numbers& numbers) {
   Coefficients all;
   std::istringstream in(plan);
@@ -124,12 +124,12 @@ Coefficients table_in(const std::string& plan, Numbers& numbers) {
 
 }  // namespace
 
-EquationDifference equation_difference(const std::string& plan, const std::string& printed) {
+EquationDifference equation_difference(const std::string& plan, const std::string& printed, double mass) {
   const EquationText paper(printed);
   std::mt19937_64 random(1);
   const auto draw = [&] { return 0.3 + static_cast<double>(random() >> 11) * 0x1p-53; };  // the same everywhere
   std::set<Place> places(paper.places.begin(), paper.places.end());
-  Numbers numbers{{"h", draw()}, {"k", draw()}, {"m", 1}};
+  Numbers numbers{{"h", draw()}, {"k", draw()}, {"m", mass}};
   Coefficients ours, theirs;
   std::map<Place, double> values;
   if (const std::string equation = equation_in(plan); !equation.empty()) {

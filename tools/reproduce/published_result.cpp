@@ -28,9 +28,9 @@ const std::vector<std::pair<std::string, Member>> members{
     {"doi", &PublishedResult::doi},         {"where", &PublishedResult::where},
     {"command", &PublishedResult::command}, {"keys", &PublishedResult::keys},
     {"scene", &PublishedResult::scene},     {"number", &PublishedResult::number},
-    {"printed", &PublishedResult::printed}, {"correct", &PublishedResult::correct},
-    {"because", &PublishedResult::because}, {"tolerance", &PublishedResult::tolerance},
-    {"differs", &PublishedResult::differs}, {"checked", &PublishedResult::checked}};
+    {"correct", &PublishedResult::correct}, {"because", &PublishedResult::because},
+    {"differs", &PublishedResult::differs}, {"tolerance", &PublishedResult::tolerance},
+    {"checked", &PublishedResult::checked}};
 const std::vector<std::string> other_keys{"like", "slow"};
 
 /// The lines of a file of results: [ID] begins one, an indented line goes on with the value above it, and # is a comment.
@@ -90,8 +90,11 @@ class ResultsFile {
       now.slow = value_ == "yes";
     } else if (key_ == "like") {
       take_from(now);
+    } else if (std::ranges::find(kinds_of_results, key_) != kinds_of_results.end()) {
+      now.kind = key_, now.expected = value_;
     } else if (member == members.end()) {
       std::vector<std::string> known = other_keys;
+      known.insert(known.end(), kinds_of_results.begin(), kinds_of_results.end());
       for (const auto& [name, of] : members) known.push_back(name);
       refuse(number_, fmt::format("{}: unknown key{}", key_, suggestion(key_, known)));
     } else {
@@ -107,14 +110,14 @@ class ResultsFile {
       refuse(number_, fmt::format("like = {}: no result above has this id", value_));
     for (const auto& [name, member] : members)
       if (member != &PublishedResult::correct && member != &PublishedResult::differs) now.*member = (*other).*member;
-    now.slow = other->slow;
+    now.kind = other->kind, now.expected = other->expected, now.slow = other->slow;
   }
 
   void finish() {
     for (auto r = all_.end() - mine_; r != all_.end(); ++r)
       for (const auto& [name, value] : {std::pair{"command", r->command},
                                         {"number", r->number},
-                                        {"printed", r->printed},
+                                        {"printed", r->expected},
                                         {"reference", r->reference},
                                         {"where", r->where},
                                         {"checked", r->checked},

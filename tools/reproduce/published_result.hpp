@@ -6,6 +6,9 @@
 
 namespace delf {
 
+/// How the expected value of a result is known: its source prints it, draws it only, or has none, and it is derived.
+inline const std::vector<std::string> kinds_of_results{"printed", "drawn", "derived"};
+
 /// A published number or equation, and the command that computes it here. Members are keys of a file of results, as
 /// tools/reproduce/README.md has them.
 struct PublishedResult {
@@ -13,7 +16,8 @@ struct PublishedResult {
   std::string paper, reference, doi, where;  ///< paper: the file's name; where: a figure, an equation, a section
   std::string command, keys, scene;          ///< SCENE in the command is the text `scene`
   std::string number;                        ///< a formula of numbers in the results of the command, or `equation`
-  std::string printed, correct;              ///< correct: in place of a misprint
+  std::string kind, expected;                ///< one of kinds_of_results, and the value under that key
+  std::string correct;                       ///< in place of a misprint
   std::string tolerance, because, differs, checked;
   bool slow = false;
   std::filesystem::path file;

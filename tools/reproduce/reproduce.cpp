@@ -32,32 +32,57 @@ constexpr Reproduced verdicts[] = {Reproduced::yes, Reproduced::misprint, Reprod
 constexpr std::size_t width = 120;
 
 // An equation is too long for a table.
-std::string printed_words(const PublishedResult& result) {
+std::string expected_words(const PublishedResult& result) {
   if (result.number == "equation") return "coefficients";
-  const bool of_bounds = result.printed.find_first_of("<>") == 0 || result.printed.find(" to ") != std::string::npos;
-  return of_bounds || result.tolerance.empty() ? result.printed
-                                               : fmt::format("{} ± {}", result.printed, result.tolerance);
+  const bool of_bounds = result.expected.find_first_of("<>") == 0 || result.expected.find(" to ") != std::string::npos;
+  return of_bounds || result.tolerance.empty() ? result.expected
+                                               : fmt::format("{} ± {}", result.expected, result.tolerance);
 }
 std::string value_words(const Reproduction& r) {
   if (std::isnan(r.value)) return "none";
   return r.result.number == "equation" ? fmt::format("{:.1e} off", r.value) : fmt::format("{:.6g}", r.value);
 }
 
-/// "38 of 44 reproduced; 4 misprints, 2 differ, 0 failed"
+/// The results of a kind, those of them that are reproduced, and those whose source was not at hand.
+struct KindCount {
+  std::string kind;
+  std::ptrdiff_t results = 0, reproduced = 0, unchecked = 0;
+};
+std::vector<KindCount> counts_of_kinds(const std::vector<Reproduction>& all) {
+  std::vector<KindCount> counts;
+  for (const std::string& kind : kinds_of_results) {
+    KindCount count{kind};
+    for (const Reproduction& r : all)
+      if (r.result.kind == kind)
+        ++count.results, count.reproduced += r.verdict == Reproduced::yes,
+            count.unchecked += r.result.checked.starts_with("not checked");
+    counts.push_back(count);
+  }
+  return counts;
+}
+
+/// "reproduced 38 of 44 printed (9 not checked in the source), 50 of 50 derived; misprinted 4, different 2, failed 0"
 std::string count_words(const std::vector<Reproduction>& all) {
   std::map<Reproduced, std::size_t> counts;
   for (const Reproduction& r : all) ++counts[r.verdict];
-  return fmt::format("reproduced {} of {}; misprinted {}, different {}, failed {}", counts[Reproduced::yes], all.size(),
+  std::string text;
+  for (const KindCount& c : counts_of_kinds(all))
+    if (c.results > 0)
+      text += fmt::format("{} {} of {} {}{}", text.empty() ? "reproduced" : ",", c.reproduced, c.results, c.kind,
+                          c.unchecked > 0 ? fmt::format(" ({} not checked in the source)", c.unchecked) : "");
+  return fmt::format("{}; misprinted {}, different {}, failed {}", text.empty() ? "reproduced none" : text,
                      counts[Reproduced::misprint], counts[Reproduced::differs], counts[Reproduced::failed]);
 }
 
 void print_table(const std::vector<Reproduction>& all) {
   std::vector<std::vector<std::string>> rows;
   for (const Reproduction& r : all)
-    rows.push_back({r.result.id, r.result.where, printed_words(r.result), value_words(r), words_of(r.verdict)});
-  fmt::print("{}",
-             text_table({{"result"}, {"where", false, 0, true}, {"printed", false, 30}, {"here", true}, {"verdict"}},
-                        rows, width));
+    rows.push_back(
+        {r.result.id, r.result.where, r.result.kind, expected_words(r.result), value_words(r), words_of(r.verdict)});
+  fmt::print(
+      "{}", text_table(
+                {{"result"}, {"where", false, 0, true}, {"kind"}, {"expected", false, 30}, {"here", true}, {"verdict"}},
+                rows, width));
   for (const Reproduced verdict : {Reproduced::misprint, Reproduced::differs, Reproduced::failed})
     for (const Reproduction& r : all)
       if (r.verdict == verdict) fmt::print("  {}, {}: {}\n", r.result.id, words_of(verdict), r.reason);
@@ -75,7 +100,8 @@ Json json_of(const Reproduction& r) {
           {"checked", p.checked},
           {"command", r.command},
           {"number", p.number},
-          {"printed", p.printed},
+          {"kind", p.kind},
+          {"expected", p.expected},
           {"correct", text_or_null(p.correct)},
           {"tolerance", text_or_null(p.tolerance)},
           {"because", text_or_null(p.because)},
@@ -86,12 +112,12 @@ Json json_of(const Reproduction& r) {
 }
 
 std::string csv_of(const std::vector<Reproduction>& all) {
-  std::string text = "id,paper,where,printed,tolerance,value,verdict,reason,seconds\n";
+  std::string text = "id,paper,where,kind,expected,tolerance,value,verdict,reason,seconds\n";
   for (const Reproduction& r : all)
-    text += fmt::format("{},{},{},{},{},{},{},{},{:.3f}\n", csv_cell(r.result.id), csv_cell(r.result.paper),
-                        csv_cell(r.result.where), csv_cell(r.result.printed), csv_cell(r.result.tolerance),
-                        std::isnan(r.value) ? "" : fmt::format("{:.17g}", r.value), words_of(r.verdict),
-                        csv_cell(r.reason), r.seconds);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{:.3f}\n", csv_cell(r.result.id), csv_cell(r.result.paper),
+                        csv_cell(r.result.where), r.result.kind, csv_cell(r.result.expected),
+                        csv_cell(r.result.tolerance), std::isnan(r.value) ? "" : fmt::format("{:.17g}", r.value),
+                        words_of(r.verdict), csv_cell(r.reason), r.seconds);
   return text;
 }
 
@@ -104,19 +130,23 @@ std::string page_of(const std::vector<Reproduction>& all, bool interrupted) {
       good && !interrupted ? " good" : "", good && !interrupted ? "Good." : "Attention.", escaped(count_words(all)),
       interrupted ? " Interrupted: the others are missing." : "");
   html += paragraph(fmt::format("delf {}, {}, {}.", DELF_VERSION, machine_in_words(), compiler_in_words()));
+  html += paragraph(
+      "Kinds of expected values: a printed one is in the source, in numbers or words; a drawn one is in a figure of it, "
+      "without a number; a derived one is not in the source, and comes from a closed formula, from theory or from an "
+      "independent program.");
   for (auto first = all.begin(); first != all.end();) {
     const PublishedResult& p = first->result;
     const auto last = std::find_if(first, all.end(), [&](const Reproduction& r) { return r.result.paper != p.paper; });
-    PageTable t{"Printed, and computed here",
-                {"result", "where", "printed", "here", "verdict", "reason, or the reason of the tolerance"},
+    PageTable t{"Expected, and computed here",
+                {"result", "where", "kind", "expected", "here", "verdict", "reason, or the reason of the tolerance"},
                 {}};
     std::string commands;
     for (auto r = first; r != last; ++r) {
-      t.rows.push_back({r->result.title, r->result.where, printed_words(r->result), value_words(*r),
+      t.rows.push_back({r->result.title, r->result.where, r->result.kind, expected_words(r->result), value_words(*r),
                         words_of(r->verdict), r->reason.empty() ? r->result.because : r->reason});
-      commands += fmt::format("# {} ({:.2f} s; printed value: {})\n{}\n", r->result.id, r->seconds, r->result.checked,
-                              r->command);
-      if (r->result.number == "equation") commands += fmt::format("# printed: {}\n", r->result.printed);
+      commands += fmt::format("# {} ({:.2f} s; {} value: {})\n{}\n", r->result.id, r->seconds, r->result.kind,
+                              r->result.checked, r->command);
+      if (r->result.number == "equation") commands += fmt::format("# {}: {}\n", r->result.kind, r->result.expected);
     }
     html += section(p.paper, p.paper,
                     paragraph(p.reference + (p.doi.empty() ? "" : ", doi:" + p.doi)) + table(t) +
@@ -132,16 +162,23 @@ void write_results(const std::vector<Reproduction>& all, bool interrupted, doubl
   json["seconds"] = seconds;
   for (const Reproduced verdict : verdicts)
     json[words_of(verdict)] = std::ranges::count(all, verdict, &Reproduction::verdict);
+  for (const KindCount& c : counts_of_kinds(all))
+    json["kinds"][c.kind] = {{"results", c.results}, {"reproduced", c.reproduced}, {"not_checked", c.unchecked}};
   json["results"] = json_list(all, json_of);
   write_text_file(folder / "results.json", json_text(json));
   write_text_file(folder / "results.csv", csv_of(all));
   write_text_file(folder / "report.html", page_of(all, interrupted));
 }
 
+/// Removes what an earlier call has left: files of these names, and the folders of published results.
+void remove_earlier(const fs::path& folder) {
+  std::error_code none;
+  for (const char* file : {"results.json", "results.csv", "report.html"}) fs::remove(folder / file, none);
+  for (const PublishedResult& result : published_results()) fs::remove_all(folder / "runs" / result.id, none);
+}
+
 /// The command of a result, in an empty folder but for its scene.
 PooledCommand prepared(const PublishedResult& result, const fs::path& folder, const std::vector<Setting>& keys) {
-  std::error_code none;
-  fs::remove_all(folder, none);
   if (!result.scene.empty()) {
     make_results_folder(folder / "scene");
     write_text_file(folder / "scene" / (result.id + ".ini"), result.scene + "\n");
@@ -167,6 +204,7 @@ ExitCode reproduce(const std::vector<std::string>& names, const std::vector<Sett
   const FolderLock held(folder);
   const Interrupt interrupt;
 
+  remove_earlier(folder);
   std::vector<PooledCommand> commands;
   std::map<std::string, std::size_t> places;  // of commands: several numbers may come from one
   std::vector<std::size_t> command_of;        // each result
@@ -176,14 +214,19 @@ ExitCode reproduce(const std::vector<std::string>& names, const std::vector<Sett
     if (is_new) commands.push_back(prepared(result, folder / "runs" / result.id, passed_on));
   }
   std::map<std::size_t, Reproduction> found;  // by the place of the result
+  std::size_t refused = 0;
+  std::string refusal;
   carry_out_side_by_side(commands, jobs, program, [&](std::size_t c, int code, double seconds) {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       if (command_of[i] != c) continue;
-      Reproduction one = judged(chosen[i], commands[c].folder, code);
-      one.command = shell_line(commands[c].words), one.seconds = seconds;
+      Reproduction one = judged(chosen[i], commands[c].words, commands[c].folder, code, passed_on);
+      one.seconds = seconds;
       found.emplace(i, std::move(one));
     }
+    if (code == static_cast<int>(ExitCode::bad_input) && refused++ == 0) refusal = error_in_log(commands[c].folder);
   });
+  // Keys that every command refuses are at fault, and no result is.
+  if (!passed_on.empty() && refused == commands.size()) throw BadScene(refusal);
   std::vector<Reproduction> all;
   for (auto& [place, one] : found) all.push_back(std::move(one));
   const bool interrupted = all.size() < chosen.size();

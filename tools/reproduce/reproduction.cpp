@@ -16,6 +16,7 @@
 #include "lattice/text_parts.hpp"
 #include "tools/reproduce/discrete_equation.hpp"
 #include "tools/reproduce/result_number.hpp"
+#include "tools/scene/shipped_scenes.hpp"
 
 namespace delf {
 
@@ -49,7 +50,7 @@ std::string text_in(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// The line of an error, which is the last one that is not indented.
+// The last line that is not indented.
 std::string last_line(const std::string& text) {
   std::istringstream in(text);
   std::string last;
@@ -61,16 +62,28 @@ std::string last_line(const std::string& text) {
 void judge_number(Reproduction& found, const fs::path& folder) {
   const PublishedResult& result = found.result;
   found.value = result_number(result.number, folder);
-  if (numbers_of(result.printed, result.tolerance).holds(found.value)) found.verdict = Reproduced::yes;
+  if (numbers_of(result.expected, result.tolerance).holds(found.value)) found.verdict = Reproduced::yes;
   else if (!result.correct.empty() && numbers_of(result.correct, result.tolerance).holds(found.value))
     found.verdict = Reproduced::misprint, found.reason = "correct: " + result.correct;
-  else found.reason = "is not the printed number, and no reason is known";
+  else found.reason = fmt::format("is not the {} number", result.kind);
 }
 
-void judge_equation(Reproduction& found, const std::string& plan) {
+// The mass that a command computes with, which the table of a plan does not show.
+double mass_of(const std::vector<std::string>& words) {
+  std::vector<Setting> keys;
+  for (const std::string& word : words)
+    if (const std::string key = key_in(word); !key.empty() && word.find('=') != word.npos)
+      keys.push_back({key, word.substr(word.find('=') + 1)});
+  const Settings settings = read_settings(find_scene(words[1]), keys);
+  const Setting* mass = settings.find("theory.mass");
+  return mass ? number_of(mass->value, mass->key) : 1;
+}
+
+void judge_equation(Reproduction& found, const std::vector<std::string>& words, const std::string& plan) {
   const PublishedResult& result = found.result;
   const double most = result.tolerance.empty() ? rounding : number_of(result.tolerance, "tolerance");
-  const EquationDifference off = equation_difference(plan, result.printed);
+  const double mass = mass_of(words);
+  const EquationDifference off = equation_difference(plan, result.expected, mass);
   found.value = off.largest;
   if (off.largest <= most) {
     found.verdict = Reproduced::yes;
@@ -78,7 +91,7 @@ void judge_equation(Reproduction& found, const std::string& plan) {
   }
   found.reason = off.where;
   if (result.correct.empty()) return;
-  const EquationDifference from_correct = equation_difference(plan, result.correct);
+  const EquationDifference from_correct = equation_difference(plan, result.correct, mass);
   if (!(from_correct.largest <= most)) return;
   found.verdict = Reproduced::misprint, found.reason += "; the corrected equation holds";
 }
@@ -116,6 +129,9 @@ Printed numbers_of(const std::string& printed, const std::string& tolerance) {
 std::vector<std::string> words_for(const PublishedResult& result, const fs::path& folder,
                                    const std::vector<Setting>& keys) {
   std::vector<std::string> words = shell_words(result.command + " " + result.keys);
+  if (std::error_code none; words.size() > 1 && fs::exists(words[1], none))
+    for (const ShippedScene& scene : shipped_scenes())
+      if (scene.name == words[1]) words[1] = scene.file.string();
   const bool writes = words[0] != "plan";
   // Of two words with one key the later one is meant: `like` gives a result the command of another.
   for (std::size_t i = 0; i < words.size();) {
@@ -147,20 +163,29 @@ std::string shell_line(const std::vector<std::string>& words) {
   return line;
 }
 
-Reproduction judged(const PublishedResult& result, const fs::path& folder, int code) {
-  Reproduction found{result, "", Reproduced::failed, unknown, "", 0};
+std::string error_in_log(const fs::path& folder) { return last_line(text_in(folder / "run.log")); }
+
+Reproduction judged(const PublishedResult& result, const std::vector<std::string>& words, const fs::path& folder,
+                    int code, const std::vector<Setting>& keys) {
+  Reproduction found{result, shell_line(words), Reproduced::failed, unknown, "", 0};
   const std::string log = text_in(folder / "run.log");
   try {
     constexpr int bad_input = 2, system_failed = 4;
     if (code == bad_input || code >= system_failed) throw BadInput("", last_line(log));
-    if (result.number == of_equation) judge_equation(found, log);
+    if (result.number == of_equation) judge_equation(found, words, log);
     else judge_number(found, folder);
     if (found.verdict == Reproduced::failed && !result.differs.empty())
       found.verdict = Reproduced::differs, found.reason = result.differs;
   } catch (const std::exception& error) {
     found.reason = error.what();
     if (found.reason.empty()) found.reason = fmt::format("exit code {}", code);
+    return found;
   }
+  if (found.verdict == Reproduced::yes) return found;
+  for (const Setting& key : keys)
+    found.reason += fmt::format("{} --{}={}", &key == keys.data() ? "; computed with" : "", key.key, key.value);
+  if (keys.empty() && found.verdict == Reproduced::failed && result.number != of_equation)
+    found.reason += ", and no reason is known";
   return found;
 }
 

@@ -9,7 +9,7 @@
 
 namespace delf {
 
-/// reproduced: as printed; misprint: as corrected; differs: from both, for the reason that the result gives; failed: from
+/// reproduced: as expected; misprint: as corrected; differs: from both, for the reason that the result gives; failed: from
 /// both without a reason, or without a number.
 enum class Reproduced { yes, misprint, differs, failed };
 std::string words_of(Reproduced);
@@ -24,14 +24,19 @@ struct Reproduction {
   double seconds = 0;
 };
 
-/// The words after `delf` for a result, with the folder that it writes to, and further keys in place of its own.
+/// The words after `delf` for a result, with the folder that it writes to, and further keys in place of its own. The scene
+/// is the shipped one, whatever file of that name the working folder has.
 std::vector<std::string> words_for(const PublishedResult&, const std::filesystem::path& folder,
                                    const std::vector<Setting>& keys);
 /// The words as a line of shell.
 std::string shell_line(const std::vector<std::string>& words);
 
-/// Judges what the command of a result left in its folder, with run.log, all that it printed; `code` is its exit code.
-Reproduction judged(const PublishedResult&, const std::filesystem::path& folder, int code);
+/// Judges what the command of a result left in its folder, with run.log, all that it printed; `code` is its exit code, and
+/// `keys` were given in place of the result's own, which a reason says.
+Reproduction judged(const PublishedResult&, const std::vector<std::string>& words, const std::filesystem::path& folder,
+                    int code, const std::vector<Setting>& keys);
+/// The line of an error in what a command printed.
+std::string error_in_log(const std::filesystem::path& folder);
 
 /// The numbers that a print stands for: 3 with a tolerance, `< 1e-13`, `> 1000`, `1.2 to 1.3`. Throws BadInput.
 struct Printed {

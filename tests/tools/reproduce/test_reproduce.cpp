@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -46,15 +47,17 @@ const std::string plan =
 
 }  // namespace
 
-TEST_CASE("there are at least forty published results, and each has its source and its tolerance") {
+TEST_CASE("at least forty results are printed in their sources, and each has its source, its tolerance and its kind") {
   const auto all = published_results();
-  CHECK(all.size() >= 40);
+  CHECK(std::ranges::count(all, "printed", &PublishedResult::kind) >= 40);
   for (const PublishedResult& r : all) {
     INFO(r.place());
     CHECK_FALSE(r.reference.empty());
     CHECK((r.tolerance.empty() || !r.because.empty()));
-    if (r.number == "equation") CHECK_NOTHROW(equation_difference(plan, r.printed));
-    else CHECK_NOTHROW(numbers_of(r.printed, r.tolerance));
+    // the source of a derived value is a computation, and that of another one is not
+    CHECK(r.checked.starts_with("derived: ") == (r.kind == "derived"));
+    if (r.number == "equation") CHECK_NOTHROW(equation_difference(plan, r.expected));
+    else CHECK_NOTHROW(numbers_of(r.expected, r.tolerance));
   }
 }
 
@@ -79,7 +82,74 @@ TEST_CASE("verdicts are computed: as printed, as corrected, or neither, with a r
   CHECK(json["failed"] == 3);
   CHECK(lines(read(folder / "out/results.csv")).size() == 7);
   CHECK(contains(read(folder / "out/report.html"), "another count"));
-  CHECK(contains(ran.out, "reproduced 1 of 6"));
+  CHECK(contains(ran.out, "reproduced 1 of 6 printed; misprinted 1"));
+}
+
+TEST_CASE("values that are printed, drawn and derived are told apart") {
+  const Folder folder;
+  const std::string run =
+      "command = run kink --lattice.sites=63 --run.steps=2\nnumber = sites\ntolerance = 0\nbecause = b\n";
+  const Ran ran = reproduced(folder, head + entry("one", run + "derived = 63\n") + entry("two", "like = one\n") +
+                                         entry("three", "like = one\ndrawn = 64\n") +
+                                         entry("four", "like = one\nprinted = 63\nchecked = not checked: lost\n"));
+  INFO(ran.out << ran.err);
+  CHECK(contains(
+      ran.out, "reproduced 1 of 1 printed (1 not checked in the source), 0 of 1 drawn, 2 of 2 derived; misprinted 0"));
+  CHECK(contains(ran.out, "is not the drawn number"));
+  CHECK(contains(read(folder / "out/report.html"),
+                 "reproduced 1 of 1 printed (1 not checked in the source), 0 of 1 drawn, 2 of 2 derived"));
+  CHECK(contains(read(folder / "out/results.csv"), "two,paper,(1),derived,63,"));
+  const Json json = results_of(folder);
+  CHECK(json["kinds"]["derived"]["reproduced"] == 2);
+  CHECK(json["kinds"]["drawn"]["results"] == 1);
+  CHECK(json["results"][2]["kind"] == "drawn");
+  CHECK(json["results"][2]["expected"] == "64");
+}
+
+TEST_CASE("keys of the caller are named in reasons, and refused in one line where no command takes them") {
+  const Folder folder;
+  const std::string more =
+      "command = run kink --lattice.sites=63 --run.steps=2\nnumber = sites\ntolerance = 0\nbecause = b\n"
+      "printed = 63\n";
+  const Ran other = reproduced(folder, head + entry("same", more), "--lattice.sites=65");
+  CHECK(other.code == 1);
+  CHECK(results_of(folder)["results"][0]["reason"] == "is not the printed number; computed with --lattice.sites=65");
+  const Ran refused = reproduced(folder, head + entry("same", more), "--lattice.sites=abc");
+  CHECK(refused.code == 2);
+  CHECK(complaints(refused) == "command line: --lattice.sites = abc: is not an integer; write one like 255\n");
+  CHECK(refused.out.empty());
+}
+
+TEST_CASE("a file of the working folder with the name of a shipped scene does not take its place") {
+  const Folder folder;
+  folder.write("kink", "nonsense\n");
+  const Ran ran =
+      reproduced(folder, head + entry("same",
+                                      "command = run kink --lattice.sites=63 --run.steps=2\nnumber = sites\n"
+                                      "tolerance = 0\nbecause = b\nprinted = 63\n"));
+  INFO(ran.out << ran.err);
+  CHECK(ran.code == 0);
+}
+
+TEST_CASE("folders of an earlier call are gone after the next one") {
+  const Folder folder;
+  const std::string run =
+      "command = run kink --lattice.sites=63 --run.steps=2\nnumber = sites\ntolerance = 0\nbecause = b\n";
+  const std::string both =
+      head + entry("one", run + "printed = 63\n") + entry("two", run + "keys = --run.steps=3\nprinted = 63\n");
+  CHECK(reproduced(folder, both).code == 0);
+  fs::create_directories(folder / "out/runs/mine");
+  CHECK(fs::exists(folder / "out/runs/two"));
+  CHECK(reproduced(folder, both, "one").code == 0);
+  CHECK(fs::exists(folder / "out/runs/one"));
+  CHECK_FALSE(fs::exists(folder / "out/runs/two"));
+  CHECK(fs::exists(folder / "out/runs/mine"));
+}
+
+TEST_CASE("an equation that the plan has as a table is compared at the mass of the command") {
+  const Folder folder;
+  CHECK(delf_program(folder, "reproduce mps-vu-quoc-li mps-guo --theory.mass=3 --out out").code == 0);
+  CHECK(results_of(folder)["misprint"] == 1);
 }
 
 TEST_CASE("an equation is compared coefficient by coefficient, up to a factor") {
