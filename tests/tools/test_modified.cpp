@@ -68,6 +68,8 @@ TEST_CASE("what has no modified Lagrangian is refused in one line") {
   refused("plan sphere --modified", "is for lattices");
   refused("plan collision --modified --scheme.method=guo", "has no modified Lagrangian");
   refused("plan nls --modified", "has other parts beside the density, such as multipliers");
+  for (const char* scene : {"wave-map", "spherical-pendulum"})
+    refused(std::string("plan --modified ") + scene, "theory.constraint: fields that multipliers hold");
   refused("plan kdv --modified", "not of second order in the time derivatives");
   refused("plan solar-system --modified", "theory.name = solar-system: is compiled");
   refused("run collision --output.modified=3 --run.steps=2", "output.modified = 3: is an even order");
@@ -100,7 +102,9 @@ TEST_CASE("energies of modified Lagrangians are for spaces without walls") {
   const Folder folder;
   const Ran ran = delf_program(folder, "run interval --output.modified=2 --run.steps=2 --output.figures=off --out out");
   CHECK(ran.code == 0);
-  CHECK(contains(ran.err, "output.modified = 2: warning: an interval has walls"));
+  CHECK(contains(ran.err,
+                 "output.modified = 2: warning: an interval has walls, where sums over sites are no integrals; "
+                 "its columns are left out"));
   CHECK_FALSE(contains(read(folder / "out/series.csv"), "energy_modified"));
   const Ran point = delf_program(folder, "run kepler --output.modified=4 --run.steps=20 --output.figures=off --out p");
   CHECK(point.code == 0);

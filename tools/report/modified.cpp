@@ -87,6 +87,11 @@ std::string sum_of(const std::vector<ModifiedLagrangian::Part>& parts, Notation 
 }  // namespace
 
 ModifiedLagrangian modified_lagrangian(const Problem& p, const Simulation& simulation, int order) {
+  if (simulation.theory().constraint())
+    throw BadInput(
+        "theory.constraint",
+        "theory.constraint: fields that multipliers hold to a constraint have no modified Lagrangian; take a "
+        "theory without one, such as that of an angle");
   if (p.lattice.space() == Space::mesh)
     refuse("lattice.space", "mesh", "its cells differ; use circle, interval or point");
   if (p.step_control || !p.time_steps.empty())
