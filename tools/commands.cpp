@@ -174,10 +174,16 @@ ExitCode run_keeping(const Arguments& arguments, const SomeScene& scene, const s
 ExitCode with_film(const Settings& settings, const std::filesystem::path& folder, const std::vector<Setting>& keys,
                    ExitCode of_run) {
   const Values values(settings);
-  if (!values.toggle("output.film") || !values.toggle("output.fields")) return of_run;
-  if (of_run != ExitCode::done) {
-    std::fputs(fmt::format("delf: no film: the run is not over; `delf film {}` makes it\n", folder.string()).c_str(),
-               stderr);
+  if (!values.toggle("output.film")) return of_run;
+  if (!values.toggle("output.fields") || of_run != ExitCode::done) {
+    std::fputs(
+        fmt::format("delf: no film: {}\n", !values.toggle("output.fields")
+                                               ? "it is made of the recorded rows; set output.fields = on"
+                                               : fmt::format("the run did not come to its end; `delf film {}` makes "
+                                                             "one of the rows that are there",
+                                                             folder.string()))
+            .c_str(),
+        stderr);
     return of_run;
   }
   try {

@@ -162,7 +162,7 @@ void warn_of_driven(ComplexScene& c) {
     const Setting* const s = settings.find((exact ? "exact." : "initial.") + name);
     c.scene.warnings.push_back(
         key_warning(settings, *s,
-                    fmt::format("is {:.3g} off what point {} is driven to at t = {:.6g}; that counts", worst,
+                    fmt::format("differs by {:.3g} from what point {} is driven to at t = {:.6g}; the driven value counts", worst,
                                 mesh.point_number(at(where)), when)));
   }
 }

@@ -54,8 +54,10 @@ std::string numbers_section(const ResultFolder& folder) {
 std::string figure_html(const PageFigure& figure, const FigureCaption& caption, const std::string& beside) {
   const std::string image =
       figure.source.empty()
-          ? paragraph(
-                fmt::format("{} is too large for this page, or of a format that a browser does not draw.", figure.file))
+          ? paragraph(fmt::format("{} is {}.", figure.file,
+                                  figure.file.ends_with(".svg") || figure.file.ends_with(".png")
+                                      ? "too large for this page"
+                                      : "of a format that the page does not show: output.format = svg is"))
           : fmt::format("<img alt=\"{}\" src=\"{}\"/>\n", escaped(caption.title + beside), figure.source);
   const std::string link =
       figure.film.empty() ? "" : fmt::format(" <a href=\"{0}\">Watch the film, {0}</a>.", escaped(figure.film));

@@ -461,7 +461,7 @@ void Stepping::warn_of_alias() {
   constexpr std::int64_t most_frames = 600;
   const bool fits = every < scene_.every && outcome_.steps / every <= most_frames;
   outcome_.warnings.push_back(fmt::format(
-      "the frames of the figures are {:.3g} apart in time, too far for this motion: what moves in them may be an alias; {}",
+      "the frames of the figures are {:.4g} apart in time, too far for this motion: what moves in them may be an alias; {}",
       apart * scene_.problem.time_step,
       fits ? fmt::format("set output.every = {} or less", every)
            : fmt::format("a figure shows {} steps of this run at most: run less far", most_frames * every)));
