@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "lattice/error.hpp"
@@ -81,9 +82,13 @@ class Peak final : public OfLastRow {
   double of(std::span<const double> row) const override {
     std::vector<std::pair<double, double>> peaks;  // height, place
     const int ends = field_.lattice.is_circle() ? 0 : 1;
+    // Where a field is flat its last digits have hills of their own, which are no peaks.
+    double size = 0;
+    for (const double value : row) size = std::max(size, std::abs(value));
+    const double rounding = 64 * std::numeric_limits<double>::epsilon() * size;
     for (int i = ends; i < field_.lattice.sites() - ends; ++i) {
       const double a = field_.at(row, i - 1), b = field_.at(row, i), c = field_.at(row, i + 1);
-      if (!(b > a && b >= c)) continue;
+      if (!(b > a && b >= c && b - std::min(a, c) > rounding)) continue;
       // f = b + ½(c − a)s + ½(a − 2b + c)s²,   largest at s = ½(a − c)/(a − 2b + c)
       const double s = 0.5 * (a - c) / (a - 2 * b + c);
       peaks.emplace_back(b + 0.25 * (c - a) * s, field_.lattice.position(i) + s * field_.lattice.space_step());

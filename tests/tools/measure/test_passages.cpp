@@ -46,6 +46,11 @@ TEST_CASE("the width of a kink, the mean of a field and the highest peaks are me
   CHECK(m["second"].get<double>() == Approx(10.03).margin(2e-3));
   CHECK(m["third"].is_null());
   CHECK(m["m"].get<double>() == Approx(2 + 4 * std::sqrt(pi) / 40).epsilon(1e-4));
+  // hills of the last digits are no peaks
+  REQUIRE(
+      measured(folder, hills, "'--initial.phi=2 + exp(-(x - 10.03)^2) + 3*exp(-(x - 30)^2) + 1e-15*sin(9*x)'").code ==
+      0);
+  CHECK(nlohmann::json::parse(read(folder / "out/summary.json"))["measures"]["third"].is_null());
 }
 
 TEST_CASE("passages of an orbit: its period, and the coordinate in a section") {
