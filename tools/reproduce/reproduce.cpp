@@ -12,6 +12,7 @@
 
 #include "tools/files/csv_cell.hpp"
 #include "tools/files/folder_lock.hpp"
+#include "tools/files/logged_process.hpp"
 #include "tools/files/text_file.hpp"
 #include "tools/outcome/findings_json.hpp"
 #include "tools/page/markup.hpp"

@@ -14,6 +14,7 @@
 #include "jets/expressions/expression.hpp"
 #include "lattice/error.hpp"
 #include "lattice/text_parts.hpp"
+#include "tools/files/logged_process.hpp"
 #include "tools/reproduce/discrete_equation.hpp"
 #include "tools/reproduce/result_number.hpp"
 #include "tools/scene/shipped_scenes.hpp"
@@ -48,15 +49,6 @@ std::string key_in(const std::string& word) { return word.starts_with("--") ? wo
 std::string text_in(const fs::path& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// The last line that is not indented.
-std::string last_line(const std::string& text) {
-  std::istringstream in(text);
-  std::string last;
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty() && line.front() != ' ') last = line;
-  return last;
 }
 
 void judge_number(Reproduction& found, const fs::path& folder) {
@@ -163,15 +155,13 @@ std::string shell_line(const std::vector<std::string>& words) {
   return line;
 }
 
-std::string error_in_log(const fs::path& folder) { return last_line(text_in(folder / "run.log")); }
-
 Reproduction judged(const PublishedResult& result, const std::vector<std::string>& words, const fs::path& folder,
                     int code, const std::vector<Setting>& keys) {
   Reproduction found{result, shell_line(words), Reproduced::failed, unknown, "", 0};
   const std::string log = text_in(folder / "run.log");
   try {
     constexpr int bad_input = 2, system_failed = 4;
-    if (code == bad_input || code >= system_failed) throw BadInput("", last_line(log));
+    if (code == bad_input || code >= system_failed) throw BadInput("", error_in_log(folder));
     if (result.number == of_equation) judge_equation(found, words, log);
     else judge_number(found, folder);
     if (found.verdict == Reproduced::failed && !result.differs.empty())

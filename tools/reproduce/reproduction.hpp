@@ -35,8 +35,6 @@ std::string shell_line(const std::vector<std::string>& words);
 /// `keys` were given in place of the result's own, which a reason says.
 Reproduction judged(const PublishedResult&, const std::vector<std::string>& words, const std::filesystem::path& folder,
                     int code, const std::vector<Setting>& keys);
-/// The line of an error in what a command printed.
-std::string error_in_log(const std::filesystem::path& folder);
 
 /// The numbers that a print stands for: 3 with a tolerance, `< 1e-13`, `> 1000`, `1.2 to 1.3`. Throws BadInput.
 struct Printed {

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "tools/sweep/run_pool.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/wait.h>
-#include <unistd.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -32,49 +24,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr auto log_name = "run.log";
-
-// Everything that the process prints goes to run.log.
-[[noreturn]] void be_a_run(const SweptRun& run, const fs::path& folder) {
-  setpgid(0, 0);  // Ctrl-C is the sweep's
-#ifdef __linux__
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // and no run outlives it
-#endif
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-  const int nothing = open("/dev/null", O_RDONLY);
-  const int log = open((folder / log_name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (nothing < 0 || log < 0 || dup2(nothing, STDIN_FILENO) < 0 || dup2(log, STDOUT_FILENO) < 0 ||
-      dup2(log, STDERR_FILENO) < 0)
-    _exit(static_cast<int>(ExitCode::system_failed));
-  ExitCode code = ExitCode::done;
+/// The run, in a process of its own.
+ExitCode carry_out(const SweptRun& run, const fs::path& folder) {
   try {
     AnyScene own = read_any_scene(run.scene.settings);
     std::visit([&](auto& scene) { common_part(scene).warnings = run.scene.warnings; }, own);
-    code = std::visit([&](const auto& scene) { return delf::run(scene, folder); }, own);
+    return std::visit([&](const auto& scene) { return delf::run(scene, folder); }, own);
   } catch (const std::exception& error) {
     std::fflush(stdout);
     fmt::print(stderr, "{}\n", error_line(error));
-    code = exit_code(error);
+    return exit_code(error);
   }
-  std::fflush(nullptr);
-  _exit(static_cast<int>(code));
-}
-
-// The first line of the error that a run ended with: its last one that is not indented, as a quoted text below it is.
-std::string error_in(const fs::path& log) {
-  std::ifstream in(log);
-  std::string error;
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty() && !line.starts_with("  ")) error = line;
-  return error;
-}
-
-int ended(int pid) {
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-  }
-  return status;
 }
 
 }  // namespace
@@ -110,27 +70,13 @@ RunPool::Process RunPool::start(const SweptRun& run, std::size_t number) {
   std::error_code none;
   fs::remove_all(folder_ / folder, none);
   make_results_folder(folder_ / folder);
-  int ends[2];
-  if (pipe(ends) != 0) throw SystemFailure(fmt::format("no pipe to a run: {}; lower sweep.jobs", std::strerror(errno)));
-  fcntl(ends[0], F_SETFD, FD_CLOEXEC);
-  fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-  std::fflush(nullptr);  // or the process would write it again
-  const pid_t pid = fork();
-  if (pid < 0) {
-    close(ends[0]), close(ends[1]);
-    throw SystemFailure(fmt::format("no process for a run: {}; lower sweep.jobs", std::strerror(errno)));
-  }
-  if (pid == 0) {
-    close(ends[0]);
-    be_a_run(run, folder_ / folder);
-  }
-  close(ends[1]);
-  return {pid, ends[0], number, folder};
+  const LoggedProcess process =
+      start_logged(folder_ / folder, "run", "sweep.jobs", [&] { return carry_out(run, folder_ / folder); });
+  return {process, number, folder};
 }
 
 SweepRow RunPool::finished(const Process& process, const SweptRun&, const std::string& fingerprint) {
-  const int status = ended(process.pid);
-  close(process.end);
+  const int status = status_of(process.process);
   SweepRow row{fingerprint, "crashed", "", request_.table ? "" : process.folder.string(), {}};
   std::ifstream in(folder_ / process.folder / "summary.json");
   row.summary = nlohmann::ordered_json::parse(in, nullptr, false);
@@ -145,7 +91,7 @@ SweepRow RunPool::finished(const Process& process, const SweptRun&, const std::s
     row.status = code == ExitCode::bad_input         ? "bad-input"
                  : code == ExitCode::numerics_failed ? "failed"
                                                      : "system-failure";
-    row.failure = error_in(folder_ / process.folder / log_name);
+    row.failure = error_in_log(folder_ / process.folder);
   }
   if (request_.table) fs::remove_all(folder_ / process.folder);
   // A run may go well another time if the machine ended it.
@@ -181,12 +127,9 @@ std::vector<SweepRow> RunPool::rows_of(const std::vector<SweptRun>& runs) {
         running.push_back(start(runs[waiting.back()], waiting.back()));
         waiting.pop_back();
       }
-      std::vector<pollfd> ends;
-      for (const Process& process : running) ends.push_back({process.end, POLLIN, 0});
-      constexpr int milliseconds = 200;  // for a signal that came just before
-      if (poll(ends.data(), ends.size(), milliseconds) < 0) continue;
-      for (std::size_t i = running.size(); i-- > 0;) {
-        if (ends[i].revents == 0) continue;
+      std::vector<LoggedProcess> processes;
+      for (const Process& process : running) processes.push_back(process.process);
+      for (const std::size_t i : ended_of(processes)) {
         const Process process = running[i];
         running.erase(running.begin() + static_cast<std::ptrdiff_t>(i));
         rows[process.run] = finished(process, runs[process.run], fingerprints[process.run]);
@@ -195,16 +138,14 @@ std::vector<SweepRow> RunPool::rows_of(const std::vector<SweptRun>& runs) {
       }
     }
   } catch (...) {
-    for (const Process& process : running) kill(process.pid, SIGKILL), ended(process.pid);
+    for (const Process& process : running) give_up(process.process);
     throw;
   }
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (const auto first = places.find(fingerprints[i]); first != places.end() && first->second != i)
       rows[i] = rows[first->second];
   for (const Process& process : running) {
-    kill(process.pid, SIGKILL);
-    ended(process.pid);
-    close(process.end);
+    give_up(process.process);
     std::error_code none;
     fs::remove_all(folder_ / process.folder, none);
   }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "tools/files/logged_process.hpp"
 #include "tools/sweep/sweep_request.hpp"
 #include "tools/sweep/sweep_row.hpp"
 
@@ -27,7 +28,7 @@ class RunPool {
 
  private:
   struct Process {
-    int pid, end;  ///< end: of a pipe that is closed when the process ends
+    LoggedProcess process;
     std::size_t run;
     std::filesystem::path folder;
   };
